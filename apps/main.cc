@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <cstdio>
+#include <exception>
+#include <map>
+
+#include "commands.h"
+#include "stereomotion/core/user_error.h"
+#include "stereomotion/io/output_error.h"
+#include "version.h"
+
+namespace stereomotion::app {
+namespace {
+
+void SetUpLog(const CommonOptions& options) {
+  auto logger = spdlog::stderr_color_mt("stereomotion");
+  logger->set_pattern("%^%l%$: %v");
+  logger->set_level(options.quiet ? spdlog::level::err
+                                  : spdlog::level::from_str(options.log_level));
+  spdlog::set_default_logger(logger);
+}
+
+void AddCommonOptions(CLI::App& command, CommonOptions& options) {
+  command.add_flag("-q,--quiet", options.quiet, "Print errors only");
+  command.add_option("--log-level", options.log_level, "How much is told on stderr")
+      ->check(CLI::IsMember({"debug", "info", "warn", "error"}))
+      ->capture_default_str();
+}
+
+// The one place where exceptions become exit codes.
+int RunGuarded(const Run& run, const CommonOptions& options) {
+  try {
+    return run(options);
+  } catch (const UserError& error) {
+    fmt::print(stderr, "stereomotion: {}\n", error.what());
+    return kWrongUse;
+  } catch (const OutputError& error) {
+    fmt::print(stderr, "stereomotion: {}\n", error.what());
+    return kDeviceFailed;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "stereomotion: {} (this is a fault of the program)\n", error.what());
+    return kDeviceFailed;
+  }
+}
+
+int Main(int argc, char** argv) {
+  CLI::App app("Measures the motion of a rigid body with two cameras.", "stereomotion");
+  app.set_version_flag("--version", std::string("stereomotion ") + kVersion);
+  app.require_subcommand(1);
+  app.footer("Example: stereomotion track --left rec/cam0 --right rec/cam1 --body body.yaml");
+  CommonOptions options;
+  options.command_line.assign(argv, argv + argc);
+  const std::map<std::string, Run> commands = {{"track", AddTrackCommand(app)},
+                                               {"simulate", AddSimulateCommand(app)}};
+  for (const auto& [name, run] : commands) AddCommonOptions(*app.get_subcommand(name), options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kDone : kWrongUse;
+  }
+  SetUpLog(options);
+  return RunGuarded(commands.at(app.get_subcommands().front()->get_name()), options);
+}
+
+}  // namespace
+}  // namespace stereomotion::app
+
+int main(int argc, char** argv) {
+  try {
+    return stereomotion::app::Main(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "stereomotion: %s\n", error.what());
+    return stereomotion::app::kWrongUse;
+  }
+}

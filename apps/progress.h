@@ -1,0 +1,30 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+namespace stereomotion::app {
+
+/// Draws a progress bar on stderr where that is a terminal; else does nothing.
+class Progress {
+ public:
+  Progress(std::int64_t total, bool quiet);
+  ~Progress();
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  /// Counts one more pair; redraws at most ten times a second.
+  void Step();
+
+ private:
+  void Draw(double elapsed_s) const;
+
+  using Clock = std::chrono::steady_clock;
+  std::int64_t total_;
+  std::int64_t done_ = 0;
+  bool shown_;
+  Clock::time_point start_ = Clock::now();
+  Clock::time_point drawn_ = start_;
+};
+
+}  // namespace stereomotion::app

@@ -1,0 +1,71 @@
+#include "run_statistics.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace stereomotion::app {
+namespace {
+
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+double LargestSigma(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
+}
+
+std::string Line(const char* label, const std::string& value) {
+  return fmt::format("  {:<26}{}\n", label, value);
+}
+
+}  // namespace
+
+double Median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void RunStatistics::Add(const PairMeasurement& measurement) {
+  if (!measurement.pose) return;
+  const PoseEstimate& pose = *measurement.pose;
+  rotation_sigma_rad_.push_back(LargestSigma(pose.covariance.topLeftCorner<3, 3>()));
+  translation_sigma_mm_.push_back(LargestSigma(pose.covariance.bottomRightCorner<3, 3>()));
+  if (pose.calibration_u) calibration_mm_.push_back(pose.calibration_u->tail<3>().maxCoeff());
+  rms_px_.push_back(pose.rms_px);
+}
+
+std::string RunStatistics::Table(const RunSummary& summary) const {
+  std::string table = Line("frame pairs", std::to_string(summary.pairs_read));
+  const double share = summary.pairs_read > 0 ? 100.0 * static_cast<double>(summary.poses) /
+                                                    static_cast<double>(summary.pairs_read)
+                                              : 0;
+  table += Line("poses", fmt::format("{} ({:.1f} %)", summary.poses, share));
+  for (const auto& [reason, count] : summary.lost_by_reason) {
+    table += Line(("  " + reason).c_str(), std::to_string(count));
+  }
+  if (!rms_px_.empty()) {
+    table +=
+        Line("sigma of position, median", fmt::format("{:.4f} mm", Median(translation_sigma_mm_)));
+    table += Line("sigma of rotation, median",
+                  fmt::format("{:.4f} deg", Median(rotation_sigma_rad_) * kDegreesPerRadian));
+    if (!calibration_mm_.empty()) {
+      table += Line("calibration part, median", fmt::format("{:.4f} mm", Median(calibration_mm_)));
+    }
+    table += Line("residual rms, median", fmt::format("{:.4f} px", Median(rms_px_)));
+  }
+  if (summary.median_chi2_dof) {
+    table +=
+        Line("chi2 per dof, median", fmt::format("{:.2f} (1 is ideal)", *summary.median_chi2_dof));
+  }
+  if (summary.elapsed_ms > 0) {
+    table += Line("speed", fmt::format("{:.1f} pairs/s", static_cast<double>(summary.pairs_read) *
+                                                             1000 / summary.elapsed_ms));
+  }
+  return table;
+}
+
+}  // namespace stereomotion::app

@@ -1,0 +1,25 @@
+#include "stop_signal.h"
+
+#include <csignal>
+
+namespace stereomotion::app {
+namespace {
+
+// A signal handler can reach nothing but a global.
+std::atomic<bool> stop_requested{false};
+static_assert(std::atomic<bool>::is_always_lock_free, "a handler may touch it only so");
+
+void RequestStop(int /*signal*/) { stop_requested.store(true); }
+
+}  // namespace
+
+const std::atomic<bool>& CatchStopSignals() {
+  struct sigaction action {};
+  action.sa_handler = RequestStop;
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second signal meets the default: the end
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  return stop_requested;
+}
+
+}  // namespace stereomotion::app

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "stereomotion/core/image.h"
+#include "stereomotion/core/sensor_noise.h"
+#include "stereomotion/detection/ball_observation.h"
+
+namespace stereomotion {
+
+/// Sets what the detector takes for a ball.
+struct DetectionOptions {
+  double min_diameter_px = 3;   ///< smaller blobs are noise or glints
+  double max_diameter_px = 64;  ///< larger blobs are lamps or walls
+  double threshold_sigma = 6;   ///< a ball's pixels rise this far over the local background
+  double min_axis_ratio = 0.6;  ///< of the fitted outline; beyond it is no ball seen by a camera
+  double max_chi2_probability_exponent = 9;  ///< a fit worse than the 10^-x tail of χ² is flagged
+  double min_signal_to_noise_db = 6;         ///< amplitude against background noise
+};
+
+/// Detects balls in images of one camera; keeps its work memory between images, so that nothing is
+/// allocated once it is warm. One object a thread.
+class BallDetector {
+ public:
+  explicit BallDetector(const SensorNoise& noise, const DetectionOptions& options = {});
+  ~BallDetector();
+  BallDetector(BallDetector&&) noexcept;
+  BallDetector& operator=(BallDetector&&) noexcept;
+
+  /// Finds the balls of `image`, ordered by v, then u; `balls` is overwritten, its memory reused.
+  ///
+  /// One pass segments the image against a coarse map of local background and noise; then each blob
+  /// is fitted by maximum likelihood with a Gaussian-blurred, shaded elliptical disc on a sloped
+  /// background under `noise` (saturated and zero pixels are censored). The result depends on
+  /// nothing but the image, the noise and the options.
+  void Detect(const ImageView& image, std::vector<BallObservation>& balls);
+
+ private:
+  struct Workspace;
+  std::unique_ptr<Workspace> workspace_;
+};
+
+/// Detects balls once, without keeping memory; for tests and single images.
+std::vector<BallObservation> DetectBalls(const ImageView& image, const SensorNoise& noise,
+                                         const DetectionOptions& options = {});
+
+}  // namespace stereomotion

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "stereomotion/core/run_summary.h"
+
+namespace stereomotion {
+
+/// Names one input of a run, with what identifies its content.
+struct RunInput {
+  std::string role;    ///< rig, body, left, right
+  std::string path;    ///< as the user gave it
+  std::string sha256;  ///< of the file, or of the images that were read (docs/formats.md)
+};
+
+/// Holds what run.json tells: how a RUN came about.
+struct RunRecord {
+  std::string version;
+  std::vector<std::string> command;
+  std::string started;            ///< ISO 8601, UTC
+  std::string state = "running";  ///< running, done, interrupted, output_failed
+  std::vector<RunInput> inputs;
+  std::string left_camera, right_camera;
+  std::int64_t left_frames = 0, right_frames = 0;
+  std::int64_t unpaired_left = 0, unpaired_right = 0;
+  bool paired_by_time = false;
+  int threads = 0;
+  RunSummary summary;
+  std::vector<std::string> warnings;  ///< besides those of `summary`
+};
+
+/// Spells a record as run.json (format stereomotion-run/1).
+std::string RunJson(const RunRecord& record);
+
+}  // namespace stereomotion

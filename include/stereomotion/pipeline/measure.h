@@ -1,0 +1,47 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "stereomotion/camera/rig.h"
+#include "stereomotion/core/body.h"
+#include "stereomotion/core/pair_source.h"
+#include "stereomotion/core/run_summary.h"
+#include "stereomotion/detection/detect_balls.h"
+#include "stereomotion/pipeline/pose_tracker.h"
+#include "stereomotion/pose/pair_measurement.h"
+
+namespace stereomotion {
+
+/// Says what is measured: which cameras of the rig see which body.
+struct MeasureSetup {
+  Rig rig;
+  int left_camera = 0;  ///< index into `rig.cameras`
+  int right_camera = 1;
+  Body body;
+};
+
+struct MeasureOptions {
+  DetectionOptions detection;
+  TrackerOptions tracker;
+  int threads = 0;          ///< 0: as many as the machine has cores
+  int noise_pairs = 8;      ///< pairs from which the noise is learned before the run
+  std::int64_t first = 0;   ///< position of the first pair
+  std::int64_t count = -1;  ///< −1: to the end
+};
+
+/// Takes each measurement in frame order; returns false to end the run (disk full).
+using MeasurementSink = std::function<bool(const PairMeasurement&)>;
+
+/// Measures a recording: learn the noise → per pair read, detect (in parallel), track the pose,
+/// give every ball its 3D point, propagate the rig's covariance → `sink`, in frame order.
+///
+/// The measurements do not depend on `threads`. `stop` (may be null) ends the run after the pair in
+/// hand. Memory does not grow with the recording's length.
+RunSummary MeasureRecording(const PairSource& source, const MeasureSetup& setup,
+                            const MeasureOptions& options, const MeasurementSink& sink,
+                            const std::atomic<bool>* stop = nullptr);
+
+}  // namespace stereomotion

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "stereomotion/pose/acquire_pose.h"
+
+namespace stereomotion {
+
+struct PoseView;
+
+struct TrackerOptions {
+  AcquireOptions acquire;
+  double max_acceleration_mm_s2 = 50000;  ///< 5 g: widens the search window with the time gap
+  double max_gap_s = 0.5;                 ///< after a longer gap nothing is predicted
+  /// Share of the outlines predicted inside the images that a tracked pose must explain where
+  /// acquisition finds nothing; the rest may be occluded.
+  double min_explained = 0.4;
+};
+
+/// Follows a body from pair to pair: predicts by constant twist, searches in a window as wide as
+/// the prediction is uncertain, and acquires from nothing where that fails or leaves balls
+/// unexplained; the explanation of more balls wins. Holds all state over time.
+class PoseTracker {
+ public:
+  PoseTracker(RigCamera left, RigCamera right, Body body, TrackerOptions options = {});
+
+  /// Finds the pose of the next pair; times must not decrease.
+  Expected<PoseFix, PoseStatus> Track(std::int64_t timestamp_ns,
+                                      const std::vector<BallObservation>& left_balls,
+                                      const std::vector<BallObservation>& right_balls);
+
+ private:
+  struct TimedPose {
+    std::int64_t timestamp_ns = 0;
+    Rigid3 world_from_body;
+  };
+  struct Prediction {
+    Rigid3 world_from_body;
+    double error_mm = 0;  ///< bound on how far a ball may be off; infinite where unknown
+  };
+  [[nodiscard]] std::optional<Prediction> Predict(std::int64_t timestamp_ns) const;
+  [[nodiscard]] Expected<PoseFix, PoseStatus> FindPose(
+      std::int64_t timestamp_ns, const Rigid3& previous,
+      const std::vector<BallObservation>& left_balls,
+      const std::vector<BallObservation>& right_balls) const;
+  [[nodiscard]] Expected<PoseFix, PoseStatus> Choose(
+      const PoseView& view, const std::optional<PoseFix>& tracked, bool identity_safe,
+      const Expected<PoseFix, PoseStatus>& acquired) const;
+
+  RigCamera left_;
+  RigCamera right_;
+  Body body_;
+  TrackerOptions options_;
+  std::optional<TimedPose> last_;
+  std::optional<TimedPose> before_last_;
+};
+
+}  // namespace stereomotion

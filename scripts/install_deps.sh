@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that stereomotion needs, those only that are missing; asks nothing.
+# usage: scripts/install_deps.sh [--lint]     (--lint: also what preset lint and pre-commit need)
+set -euo pipefail
+. "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
+
+packages=(
+  ca-certificates g++ cmake ninja-build ccache python3 dpkg-dev file
+  libeigen3-dev libopencv-dev libyaml-cpp-dev libtomlplusplus-dev nlohmann-json3-dev
+  libfmt-dev libspdlog-dev libcli11-dev libssl-dev zlib1g-dev
+  libgtest-dev libbenchmark-dev
+)
+if [[ ${1:-} == --lint ]]; then packages+=(clang-tidy clang-format); fi
+
+is_installed() { [[ $(dpkg-query -W -f='${Status}' "$1" 2>/dev/null) == *' installed' ]]; }
+
+missing=()
+for package in "${packages[@]}"; do
+  is_installed "$package" || missing+=("$package")
+done
+if [[ ${#missing[@]} -eq 0 ]]; then exit 0; fi
+
+as_root=()
+if [[ $(id -u) -ne 0 ]]; then
+  if ! command -v sudo >/dev/null; then
+    echo "install_deps.sh: run as root or install sudo; missing: ${missing[*]}" >&2
+    exit 3
+  fi
+  as_root=(sudo)
+  sudo true # in the foreground, should it want a password
+fi
+# Behind `env` because sudo drops the caller's environment. The lock may be held by a daily upgrade.
+apt=("${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y
+  -o Dpkg::Use-Pty=0 -o DPkg::Lock::Timeout=600 -o Acquire::Retries=3)
+
+install() { "${apt[@]}" install --no-install-recommends "${missing[@]}"; }
+# A fresh machine has no package lists, an old one stale ones: only then are they fetched.
+install_or_update() { install || { "${apt[@]}" update && install; }; }
+
+stage "install ${#missing[@]} packages" install_or_update || {
+  echo "install_deps.sh: apt-get could not install: ${missing[*]}" >&2
+  exit 3
+}

@@ -1,0 +1,52 @@
+# Prints poses.csv (second file) as a table, with the distance from the true poses.csv (first file).
+# Columns are found by name, so that added ones do no harm.
+FNR == 1 {
+  ++file
+  delete column
+  for (i = 1; i <= NF; ++i) column[$i] = i
+  if (file == 2) {
+    print "                 position of the body in the world [mm], 1 sigma    off the truth"
+    print "frame  status            x                  y                  z          [mm]  [deg]"
+  }
+  next
+}
+file == 1 {
+  true_x[$1] = $column["tx_mm"]; true_y[$1] = $column["ty_mm"]; true_z[$1] = $column["tz_mm"]
+  true_qw[$1] = $column["qw"]; true_qx[$1] = $column["qx"]
+  true_qy[$1] = $column["qy"]; true_qz[$1] = $column["qz"]
+  next
+}
+{
+  ++frames
+  status = $column["status"]
+  if (status != "ok") { printf "%5d  %s\n", $1, status; next }
+  ++poses
+  x = $column["tx_mm"]; y = $column["ty_mm"]; z = $column["tz_mm"]
+  printf "%5d  %-7s %s %s %s", $1, status, with_sigma(x, "cov_33"), with_sigma(y, "cov_44"),
+         with_sigma(z, "cov_55")
+  if ($1 in true_x) {
+    distance = sqrt((x - true_x[$1]) ^ 2 + (y - true_y[$1]) ^ 2 + (z - true_z[$1]) ^ 2)
+    angle = angle_between($1)
+    printf "  %6.4f  %6.4f", distance, angle
+    if (distance > worst_mm) worst_mm = distance
+    if (angle > worst_deg) worst_deg = angle
+  }
+  print ""
+}
+END {
+  printf "\n%d poses in %d frame pairs; farthest from the truth: %.4f mm, %.4f deg\n", poses, frames,
+         worst_mm, worst_deg
+  if (poses == 0) exit 1
+}
+function with_sigma(value, name) {
+  return sprintf("%10.4f ± %6.4f", value, sqrt($column[name]))
+}
+# The vector part of true⁻¹ · measured is sin(angle / 2); acos(w) would lose all digits near 1.
+function angle_between(f,   a, b, c, d, vx, vy, vz, sine) {
+  a = true_qw[f]; b = -true_qx[f]; c = -true_qy[f]; d = -true_qz[f]
+  vx = a * $column["qx"] + b * $column["qw"] + c * $column["qz"] - d * $column["qy"]
+  vy = a * $column["qy"] - b * $column["qz"] + c * $column["qw"] + d * $column["qx"]
+  vz = a * $column["qz"] + b * $column["qy"] - c * $column["qx"] + d * $column["qw"]
+  sine = sqrt(vx * vx + vy * vy + vz * vz)
+  return 2 * atan2(sine, sqrt(sine < 1 ? 1 - sine * sine : 0)) * 180 / 3.14159265358979
+}

@@ -1,0 +1,174 @@
+#include "stereomotion/capture/recording.h"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "frame_stream.h"
+#include "stereomotion/capture/pair_frames.h"
+#include "stereomotion/core/user_error.h"
+
+namespace stereomotion {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Only for two single images, which show no period of their own.
+constexpr std::int64_t kPeriodOfSingleFramesNs = 20'000'000;
+
+std::unique_ptr<FrameStream> OpenStream(const fs::path& path, const StreamOptions& options) {
+  if (path.empty()) throw UserError("an empty name, expected a folder of images or a video file");
+  if (fs::is_regular_file(path)) return OpenVideo(path, options);
+  return OpenImageFolder(path, options);
+}
+
+std::vector<std::int64_t> Times(const FrameStream& stream) {
+  std::vector<std::int64_t> times_ns;
+  for (const FrameInfo& frame : stream.frames()) times_ns.push_back(frame.timestamp_ns);
+  return times_ns;
+}
+
+std::vector<std::int64_t> ByPosition(std::size_t left_size, std::size_t right_size) {
+  std::vector<std::int64_t> partner(left_size, -1);
+  for (std::size_t i = 0; i < std::min(left_size, right_size); ++i) {
+    partner[i] = static_cast<std::int64_t>(i);
+  }
+  return partner;
+}
+
+// Frame numbers tell which frames one camera lost; a shift alike for all tells nothing.
+bool NumbersTell(const FrameStream& left, const FrameStream& right) {
+  if (!left.is_numbered() || !right.is_numbered()) return false;
+  const auto &a = left.frames(), &b = right.frames();
+  if (a.back().index < b.front().index || b.back().index < a.front().index) return false;
+  if (a.size() != b.size()) return true;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i].index - b[i].index != a[0].index - b[0].index) return true;
+  }
+  return false;
+}
+
+std::vector<std::int64_t> ByNumber(const FrameStream& left, const FrameStream& right) {
+  std::map<std::int64_t, std::int64_t> place;
+  for (const FrameInfo& frame : right.frames()) {
+    place.emplace(frame.index, static_cast<std::int64_t>(place.size()));
+  }
+  std::vector<std::int64_t> partner;
+  for (const FrameInfo& frame : left.frames()) {
+    const auto found = place.find(frame.index);
+    partner.push_back(found == place.end() ? -1 : found->second);
+  }
+  return partner;
+}
+
+class StreamPair : public Recording {
+ public:
+  StreamPair(const fs::path& left, const fs::path& right, const RecordingOptions& options)
+      : left_(OpenStream(left, {options.fps, options.hash_images})),
+        right_(OpenStream(right, {options.fps, options.hash_images})) {
+    RequireSameClocks(left, right);
+    Pair();
+    Report(left, right);
+  }
+
+  std::int64_t size() const override { return static_cast<std::int64_t>(partner_.size()); }
+  const RecordingReport& report() const override { return report_; }
+
+  void Read(std::int64_t position, FramePair& pair) const override {
+    if (position < 0 || position >= size())
+      throw std::out_of_range("Recording::Read: no such pair");
+    ReadFrame(*left_, position, pair.left);
+    const std::int64_t partner = partner_[static_cast<std::size_t>(position)];
+    if (partner >= 0) {
+      ReadFrame(*right_, partner, pair.right);
+    } else {
+      pair.right.index = -1;
+      pair.right.timestamp_ns = 0;
+      pair.right.exposure_us = 0;
+      pair.right.image.Resize(0, 0, PixelType::kGray8);
+      pair.right.problem = "the left frame has no partner";
+    }
+  }
+
+  std::string InputDigest(Side side) const override { return Stream(side).InputDigest(); }
+  std::vector<fs::path> InputFiles(Side side) const override { return Stream(side).InputFiles(); }
+
+ private:
+  [[nodiscard]] const FrameStream& Stream(Side side) const {
+    return side == Side::kLeft ? *left_ : *right_;
+  }
+  static void ReadFrame(const FrameStream& stream, std::int64_t position, Frame& frame) {
+    const FrameInfo& info = stream.frames()[static_cast<std::size_t>(position)];
+    frame.index = info.index;
+    frame.timestamp_ns = info.timestamp_ns;
+    frame.exposure_us = info.exposure_us;
+    stream.ReadImage(position, frame);
+  }
+  void RequireSameClocks(const fs::path& left, const fs::path& right) const {
+    if (left_->has_timestamps() == right_->has_timestamps()) return;
+    const bool left_has = left_->has_timestamps();
+    throw UserError((left_has ? left : right).string() + ": has timestamps.csv, but " +
+                    (left_has ? right : left).string() +
+                    " has none; expected both (pairs are found by time), or neither and --fps");
+  }
+  void Pair() {
+    const std::vector<std::int64_t> left_ns = Times(*left_), right_ns = Times(*right_);
+    const std::int64_t left_period = MedianPeriodNs(left_ns);
+    report_.period_s = static_cast<double>(left_period) * 1e-9;
+    report_.paired_by_time = left_->has_timestamps();
+    if (report_.paired_by_time) {
+      std::int64_t period_ns = std::max(left_period, MedianPeriodNs(right_ns));
+      if (left_period > 0 && right_ns.size() > 1) {
+        period_ns = std::min(left_period, MedianPeriodNs(right_ns));
+      }
+      if (period_ns <= 0) period_ns = kPeriodOfSingleFramesNs;
+      partner_ = PairByTime(left_ns, right_ns, (period_ns + 1) / 2);
+    } else if (NumbersTell(*left_, *right_)) {
+      partner_ = ByNumber(*left_, *right_);
+    } else {
+      partner_ = ByPosition(left_ns.size(), right_ns.size());
+    }
+  }
+  void Report(const fs::path& left, const fs::path& right) {
+    report_.left_frames = size();
+    report_.right_frames = static_cast<std::int64_t>(right_->frames().size());
+    report_.unpaired_left = std::count(partner_.begin(), partner_.end(), -1);
+    report_.pairs = report_.left_frames - report_.unpaired_left;
+    report_.unpaired_right = report_.right_frames - report_.pairs;
+    for (const auto* stream : {left_.get(), right_.get()}) {
+      const auto& warnings = stream->warnings();
+      report_.warnings.insert(report_.warnings.end(), warnings.begin(), warnings.end());
+    }
+    if (report_.unpaired_left > 0 || report_.unpaired_right > 0) WarnOfUnpaired(left, right);
+  }
+  void WarnOfUnpaired(const fs::path& left, const fs::path& right) {
+    std::string text = left.string() + " has " + std::to_string(report_.left_frames) + " frames, " +
+                       right.string() + " " + std::to_string(report_.right_frames) + ": " +
+                       std::to_string(report_.unpaired_left) + " left and " +
+                       std::to_string(report_.unpaired_right) + " right frames have no partner";
+    if (report_.pairs == 0) {
+      text += "; no pair at all: do both cameras' timestamps come from one clock?";
+    } else if (!report_.paired_by_time) {
+      text += "; without timestamps.csv nothing tells when frames were lost";
+    }
+    report_.warnings.push_back(text);
+  }
+
+  std::unique_ptr<FrameStream> left_;
+  std::unique_ptr<FrameStream> right_;
+  std::vector<std::int64_t> partner_;  // a left frame's right one, or −1
+  RecordingReport report_;
+};
+
+}  // namespace
+
+std::unique_ptr<Recording> OpenRecording(const fs::path& left, const fs::path& right,
+                                         const RecordingOptions& options) {
+  std::error_code ignored;
+  if (fs::equivalent(left, right, ignored)) {
+    throw UserError(left.string() + ": left and right are the same, expected two cameras");
+  }
+  return std::make_unique<StreamPair>(left, right, options);
+}
+
+}  // namespace stereomotion

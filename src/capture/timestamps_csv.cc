@@ -1,0 +1,111 @@
+#include "timestamps_csv.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "stereomotion/core/user_error.h"
+
+namespace stereomotion {
+namespace {
+
+std::string_view Trimmed(std::string_view text) {
+  constexpr std::string_view kBlank = " \t\r\xEF\xBB\xBF";  // a byte order mark counts as blank
+  const auto first = text.find_first_not_of(kBlank);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlank) - first + 1);
+}
+
+std::vector<std::string_view> SplitCells(std::string_view line) {
+  std::vector<std::string_view> cells;
+  for (std::size_t begin = 0;;) {
+    const auto comma = line.find(',', begin);
+    cells.push_back(Trimmed(line.substr(begin, comma - begin)));
+    if (comma == std::string_view::npos) return cells;
+    begin = comma + 1;
+  }
+}
+
+class Table {
+ public:
+  explicit Table(const std::filesystem::path& file) : file_(file), stream_(file) {
+    if (!stream_) throw UserError(file.string() + ": cannot be read");
+    if (!NextLine()) Fail("an empty file", "a header line: frame,timestamp_ns");
+    for (const auto cell : cells_) columns_.emplace_back(cell);
+  }
+  bool NextLine() {
+    while (std::getline(stream_, line_)) {
+      ++line_number_;
+      if (Trimmed(line_).empty()) continue;
+      cells_ = SplitCells(line_);
+      return true;
+    }
+    return false;
+  }
+  [[nodiscard]] int Column(std::string_view name) const {
+    const auto found = std::find(columns_.begin(), columns_.end(), name);
+    return found == columns_.end() ? -1 : static_cast<int>(found - columns_.begin());
+  }
+  template <class T>
+  T Number(int column) const {
+    const auto& name = columns_[static_cast<std::size_t>(column)];
+    if (static_cast<std::size_t>(column) >= cells_.size()) Fail("no cell", "a number in " + name);
+    const std::string_view cell = cells_[static_cast<std::size_t>(column)];
+    T number{};
+    const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), number);
+    if (error != std::errc() || end != cell.data() + cell.size()) {
+      Fail("'" + std::string(cell) + "' in " + name,
+           std::is_integral_v<T> ? "a whole number" : "a number");
+    }
+    return number;
+  }
+  [[nodiscard]] bool IsBlank(int column) const {
+    return static_cast<std::size_t>(column) >= cells_.size() ||
+           cells_[static_cast<std::size_t>(column)].empty();
+  }
+  [[noreturn]] void Fail(const std::string& found, const std::string& expected) const {
+    throw UserError(file_.string() + ":" + std::to_string(line_number_) + ": found " + found +
+                    ", expected " + expected);
+  }
+
+ private:
+  std::filesystem::path file_;
+  std::ifstream stream_;
+  std::string line_;
+  int line_number_ = 0;
+  std::vector<std::string_view> cells_;
+  std::vector<std::string> columns_;
+};
+
+}  // namespace
+
+std::vector<FrameInfo> ReadTimestamps(const std::filesystem::path& file) {
+  Table table(file);
+  const int frame = table.Column("frame");
+  const int time = table.Column("timestamp_ns");
+  const int exposure = table.Column("exposure_us");
+  if (frame < 0) table.Fail("no column 'frame'", "frame,timestamp_ns[,exposure_us]");
+  if (time < 0) table.Fail("no column 'timestamp_ns'", "frame,timestamp_ns[,exposure_us]");
+  std::vector<FrameInfo> rows;
+  while (table.NextLine()) {
+    FrameInfo row{table.Number<std::int64_t>(frame), table.Number<std::int64_t>(time), 0};
+    if (exposure >= 0 && !table.IsBlank(exposure)) row.exposure_us = table.Number<double>(exposure);
+    if (row.index < 0) table.Fail("frame " + std::to_string(row.index), "0 or more");
+    if (!rows.empty() && row.timestamp_ns <= rows.back().timestamp_ns) {
+      table.Fail("timestamp_ns " + std::to_string(row.timestamp_ns),
+                 "more than the line before (" + std::to_string(rows.back().timestamp_ns) + ")");
+    }
+    if (!rows.empty() && row.index <= rows.back().index) {
+      table.Fail("frame " + std::to_string(row.index),
+                 "more than the line before (" + std::to_string(rows.back().index) + ")");
+    }
+    rows.push_back(row);
+  }
+  if (rows.empty()) table.Fail("no rows", "a row a frame");
+  return rows;
+}
+
+}  // namespace stereomotion

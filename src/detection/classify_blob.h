@@ -1,0 +1,19 @@
+#pragma once
+
+#include "fit_ball.h"
+#include "segment_blobs.h"
+#include "stereomotion/core/image.h"
+#include "stereomotion/detection/ball_observation.h"
+#include "stereomotion/detection/detect_balls.h"
+
+namespace stereomotion {
+
+/// Tells from its size, shape and surroundings whether a blob is worth a fit: a ball is a compact
+/// island, darker all around.
+bool MayBeBall(const ImageView& image, const Blob& blob, const DetectionOptions& options);
+
+/// Turns a fit into an observation and judges it. A fit that failed leaves the blob's moments.
+BallObservation ClassifyBall(const ImageView& image, const Blob& blob, const BallFit& fit,
+                             const Eigen::Vector2d& origin_px, const DetectionOptions& options);
+
+}  // namespace stereomotion

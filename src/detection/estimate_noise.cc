@@ -1,0 +1,212 @@
+#include "stereomotion/detection/estimate_noise.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "background_map.h"
+#include "ball_fitter.h"
+#include "classify_blob.h"
+#include "segment_blobs.h"
+
+namespace stereomotion {
+namespace {
+
+/// Pixels this far inside the limb show the ball's own light: nearer to it the blur's true shape
+/// would leak into the noise.
+constexpr float kInside = 1.5F;
+/// A ball that scatters this much more than the median one is hidden in part, or no ball.
+constexpr double kLargestScatterRatio = 2;
+/// A residual beyond this many σ shows a rod or a scratch (once the noise is known roughly).
+constexpr double kLargestResidual_sigma = 4.5;
+constexpr int kPasses = 4;
+/// Independent differences of neighbours in a cell's stretch of 32 pixels (von Neumann 1941: 2/3 of
+/// 31).
+constexpr int kPixelsPerCell = 20;
+/// Closer to grey value 0 than this too much of the noise is cut off to be made good.
+constexpr double kDarkest_sigma = 1.0;
+constexpr int kFewestPixels = 200;
+
+/// Sums of one ball's pixels for the line variance = intercept + slope × mean; weights 1/(2 σ⁴) are
+/// those of squared normal residuals.
+struct LineSums {
+  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d rhs = Eigen::Vector2d::Zero();
+  double scatter = 0;  ///< Σ r² / σ²
+  int pixels = 0;
+
+  void Add(double mean_dn, double variance_dn2, double expected_dn2, int count = 1) {
+    const double w = 0.5 * count / (expected_dn2 * expected_dn2);
+    const Eigen::Vector2d row(1, mean_dn);
+    normal += w * row * row.transpose();
+    rhs += w * variance_dn2 * row;
+    scatter += count * variance_dn2 / expected_dn2;
+    pixels += count;
+  }
+  void Add(const LineSums& other) {
+    normal += other.normal;
+    rhs += other.rhs;
+    pixels += other.pixels;
+  }
+  [[nodiscard]] double MeanScatter() const { return scatter / std::max(pixels, 1); }
+};
+
+/// Sums the squared residuals inside one ball.
+LineSums MeasureBall(const BallPatch& patch, const BallFit& fit, const SensorNoise& noise,
+                     double largest_residual_sigma) {
+  LineSums sums;
+  for (int i = 0; i < patch.size; ++i) {
+    if (patch.weight[i] <= 0 || patch.depth[i] < kInside) continue;
+    const BallModel::Vector row = patch.jacobian.row(i).matrix().cast<double>();
+    const double leverage = patch.weight[i] * row.dot(fit.covariance * row);
+    if (leverage > 0.5) continue;
+    const double residual = patch.grey[i] - patch.model[i];
+    const double variance = residual * residual / (1 - leverage);
+    const double expected = noise.VarianceDn2(patch.model[i]);
+    if (variance > largest_residual_sigma * largest_residual_sigma * expected) continue;
+    sums.Add(patch.model[i], variance, expected);
+  }
+  return sums;
+}
+
+/// Sums the balls whose scatter is not far above the median's.
+LineSums SumOrdinary(const std::vector<LineSums>& balls) {
+  std::vector<double> scatters;
+  for (const LineSums& ball : balls) {
+    if (ball.pixels > 0) scatters.push_back(ball.MeanScatter());
+  }
+  LineSums sum;
+  if (scatters.empty()) return sum;
+  const auto middle = scatters.begin() + static_cast<std::ptrdiff_t>(scatters.size() / 2);
+  std::nth_element(scatters.begin(), middle, scatters.end());
+  for (const LineSums& ball : balls) {
+    if (ball.MeanScatter() <= kLargestScatterRatio * *middle) sum.Add(ball);
+  }
+  return sum;
+}
+
+/// Holds what is left of a normal distribution when its negative part is recorded as 0.
+struct ClippedNormal {
+  double mean_sigma;      ///< mean / σ after clipping
+  double variance_ratio;  ///< variance / σ² after clipping
+};
+
+/// Clips a normal distribution whose mean is `alpha` σ at zero (Greene, Econometric Analysis, ch.
+/// 19).
+ClippedNormal ClipAtZero(double alpha) {
+  const double above = 0.5 * std::erfc(-alpha / std::sqrt(2.0));
+  const double density = std::exp(-0.5 * alpha * alpha) / std::sqrt(2 * 3.14159265358979323846);
+  const double mean = alpha * above + density;
+  return {mean, (alpha * alpha + 1) * above + alpha * density - mean * mean};
+}
+
+/// Adds the background's cells, those left out that show more than noise (edges, balls, rods).
+void AddBackground(const BackgroundMap& map, const SensorNoise& noise, LineSums& sums) {
+  for (std::size_t i = 0; i < map.level_dn.size(); ++i) {
+    const double expected = noise.VarianceDn2(map.raw_level_dn[i]);
+    const double sigma = std::sqrt(expected);
+    // In near darkness the noise's negative half is cut off at grey value 0.
+    double alpha = map.raw_level_dn[i] / sigma;
+    for (int k = 0; k < 3; ++k) alpha += map.raw_level_dn[i] / sigma - ClipAtZero(alpha).mean_sigma;
+    if (alpha < kDarkest_sigma) continue;
+    const double level = alpha * sigma;
+    const double variance = map.raw_variance_dn2[i] / ClipAtZero(alpha).variance_ratio;
+    if (variance > kLargestScatterRatio * expected) continue;
+    sums.Add(level, variance, expected, kPixelsPerCell);
+  }
+}
+
+double SaturationOf(const std::vector<ImageView>& images) {
+  if (images.front().type == PixelType::kGray8) return 255;
+  double highest = 0;
+  for (const ImageView& image : images) {
+    for (int v = 0; v < image.height_px; ++v) {
+      const auto* row = image.Row<std::uint16_t>(v);
+      highest = std::max<double>(highest, *std::max_element(row, row + image.width_px));
+    }
+  }
+  for (const double top : {1023.0, 4095.0, 16383.0}) {
+    if (highest <= top) return top;
+  }
+  return 65535;
+}
+
+/// Starts from a noise that does not depend on the grey value: the median cell's background noise.
+SensorNoise StartNoise(const std::vector<ImageView>& images, const DetectionOptions& options) {
+  SensorNoise noise;
+  noise.saturation_dn = SaturationOf(images);
+  noise.gain_e_per_dn = 1e6;
+  noise.read_e = 0;
+  std::vector<float> levels;
+  BackgroundMap map;
+  for (const ImageView& image : images) {
+    EstimateBackground(image, noise, options.max_diameter_px, map);
+    levels.insert(levels.end(), map.raw_variance_dn2.begin(), map.raw_variance_dn2.end());
+  }
+  const auto middle = levels.begin() + static_cast<std::ptrdiff_t>(levels.size() / 2);
+  std::nth_element(levels.begin(), middle, levels.end());
+  noise.read_e = std::sqrt(std::max(0.0F, *middle)) * noise.gain_e_per_dn;
+  return noise;
+}
+
+/// Turns the fitted line into the sensor's terms; nothing where variance does not grow with light.
+std::optional<SensorNoise> FromLine(const LineSums& sums, double saturation_dn) {
+  const Eigen::Vector2d line = sums.normal.ldlt().solve(sums.rhs);
+  if (!line.allFinite()) return std::nullopt;
+  SensorNoise noise;
+  noise.saturation_dn = saturation_dn;
+  // A slope below the line's own uncertainty: read noise alone explains the images.
+  noise.gain_e_per_dn = 1 / std::max(line[1], 1e-6);
+  const double read_dn2 = line[0] - 1.0 / 12.0;
+  if (read_dn2 >= 0) {
+    noise.read_e = std::sqrt(read_dn2) * noise.gain_e_per_dn;
+  } else {
+    // The line meets the quantisation floor above grey value 0: that is where darkness lies.
+    noise.read_e = 0;
+    noise.black_dn = -read_dn2 * noise.gain_e_per_dn;
+  }
+  return noise;
+}
+
+std::optional<SensorNoise> RefineNoise(const std::vector<ImageView>& images,
+                                       const SensorNoise& noise, const DetectionOptions& options,
+                                       double largest_residual_sigma) {
+  BackgroundMap background;
+  Segmenter segmenter;
+  BallFitter fitter;
+  std::vector<LineSums> balls;
+  LineSums outside;
+  for (const ImageView& image : images) {
+    EstimateBackground(image, noise, options.max_diameter_px, background);
+    AddBackground(background, noise, outside);
+    segmenter.Segment(image, background, options.threshold_sigma);
+    for (const Blob& blob : segmenter.blobs()) {
+      if (!MayBeBall(image, blob, options)) continue;
+      const BallFit& fit = fitter.Fit(image, segmenter, blob, noise);
+      const BallObservation ball = ClassifyBall(image, blob, fit, fitter.origin(), options);
+      if (ball.status != BlobStatus::kOk) continue;
+      balls.push_back(MeasureBall(fitter.patch(), fit, noise, largest_residual_sigma));
+    }
+  }
+  LineSums sums = SumOrdinary(balls);
+  if (sums.pixels < kFewestPixels) return std::nullopt;
+  sums.Add(outside);
+  return FromLine(sums, noise.saturation_dn);
+}
+
+}  // namespace
+
+std::optional<SensorNoise> EstimateNoise(const std::vector<ImageView>& images,
+                                         const DetectionOptions& options) {
+  if (images.empty()) return std::nullopt;
+  SensorNoise noise = StartNoise(images, options);
+  for (int pass = 0; pass < kPasses; ++pass) {
+    const auto refined =
+        RefineNoise(images, noise, options, pass == 0 ? 1e6 : kLargestResidual_sigma);
+    if (!refined) return std::nullopt;
+    noise = *refined;
+  }
+  return noise;
+}
+
+}  // namespace stereomotion

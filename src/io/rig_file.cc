@@ -1,0 +1,42 @@
+#include "stereomotion/io/rig_file.h"
+
+#include <fstream>
+
+#include "rig_formats.h"
+#include "stereomotion/core/user_error.h"
+
+namespace stereomotion {
+namespace {
+
+// The first line tells FileStorage (`%YAML:1.0`, `<?xml`) apart: yaml-cpp would choke on it.
+std::string FirstLine(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  std::string line;
+  if (!stream || std::filesystem::is_directory(file)) {
+    throw UserError(file.string() + ": cannot be read, expected a rig file");
+  }
+  std::getline(stream, line);
+  return line;
+}
+
+bool IsKalibr(const YamlReader& root) { return root.Has("cam0") && !root.Has("format"); }
+
+Rig ReadAnyRig(const std::filesystem::path& file) {
+  const std::string first_line = FirstLine(file);
+  if (file.extension() == ".toml") return ReadAniposeRig(file);
+  if (first_line.rfind("%YAML:", 0) == 0 || first_line.rfind("<?xml", 0) == 0) {
+    return ReadOpenCvRig(file);
+  }
+  const YamlReader root = YamlReader::Load(file);
+  return IsKalibr(root) ? ReadKalibrRig(root) : ReadOwnRig(root);
+}
+
+}  // namespace
+
+Rig ReadRig(const std::filesystem::path& file) {
+  Rig rig = ReadAnyRig(file);
+  CheckRig(file, rig);
+  return rig;
+}
+
+}  // namespace stereomotion

@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+
+#include "stereomotion/detection/detect_balls.h"
+#include "stereomotion/simulation/render.h"
+
+#if defined(__SANITIZE_ADDRESS__) || !defined(__GLIBC__)
+#define STEREOMOTION_CANNOT_COUNT 1
+#else
+namespace {
+std::atomic<long> allocations{0};
+}  // namespace
+
+extern "C" void* __libc_malloc(std::size_t size);
+extern "C" void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+#endif
+
+namespace stereomotion {
+namespace {
+
+TEST(BallDetector, AllocatesNothingOnceWarm) {
+#ifdef STEREOMOTION_CANNOT_COUNT
+  GTEST_SKIP() << "malloc cannot be counted under this sanitizer or C library";
+#else
+  std::vector<BallImage> balls;
+  for (int i = 0; i < 12; ++i)
+    balls.push_back(RoundBall({40.0 + 50 * (i % 4), 40.0 + 50 * (i / 4)}, 10, 150));
+  RenderOptions options;
+  options.width_px = 260;
+  options.height_px = 200;
+  options.noise = SensorNoise{58.8, 8, 0, 255};
+  Image image;
+  RenderBalls(balls, options, image);
+  BallDetector detector(*options.noise);
+  std::vector<BallObservation> found;
+  detector.Detect(image.View(), found);
+  detector.Detect(image.View(), found);
+  const long before = allocations;
+  for (int i = 0; i < 5; ++i) detector.Detect(image.View(), found);
+  EXPECT_EQ(allocations - before, 0);
+  EXPECT_EQ(found.size(), balls.size());
+#endif
+}
+
+}  // namespace
+}  // namespace stereomotion
