@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -10,19 +11,16 @@
 #include <set>
 #include <thread>
 
-#include "camera_argument.h"
 #include "commands.h"
 #include "progress.h"
 #include "run_statistics.h"
 #include "stereomotion/capture/recording.h"
 #include "stereomotion/capture/sha256.h"
-#include "stereomotion/core/user_error.h"
-#include "stereomotion/io/body_file.h"
 #include "stereomotion/io/output_error.h"
-#include "stereomotion/io/rig_file.h"
 #include "stereomotion/io/run_writer.h"
 #include "stereomotion/pipeline/measure.h"
 #include "stop_signal.h"
+#include "track_inputs.h"
 #include "version.h"
 
 namespace stereomotion::app {
@@ -30,105 +28,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct TrackOptions {
-  std::string left, right;
-  std::string rig = "rig.yaml";
-  std::string body;
-  std::string output;
-  double fps = 0;
-  std::int64_t start = 0;
-  std::int64_t count = -1;
-  int threads = 0;
-  bool force = false;
-};
-
-// All that is read before the measuring starts.
-struct Inputs {
-  MeasureSetup setup;
-  MeasureOptions options;
-  std::unique_ptr<Recording> recording;
-};
-
-Rig LoadRig(const TrackOptions& options) {
-  if (!fs::exists(options.rig)) {
-    throw UserError(options.rig +
-                    ": no such file, expected the calibrated cameras; give --rig FILE (the format "
-                    "stands in docs/formats.md, an example in calib/rig.yaml; OpenCV, Kalibr and "
-                    "anipose calibrations are read as they are)");
-  }
-  return ReadRig(options.rig);
-}
-
-Body LoadBody(const TrackOptions& options) {
-  if (options.body.empty()) {
-    throw UserError(
-        "--body: missing, expected a body.yaml (an example is calib/body.yaml); measuring a body "
-        "of "
-        "unknown shape is not available yet");
-  }
-  return ReadBody(options.body);
-}
-
-// Fails early where the rig was calibrated for other images: every frame would be lost for it.
-void CheckImageSize(const ImageView& image, const RigCamera& camera, const std::string& stream,
-                    const std::string& rig_file) {
-  if (image.width_px == camera.width_px && image.height_px == camera.height_px) return;
-  throw UserError(fmt::format(
-      "{}: found images of {} x {} px, expected {} x {} px, the image_size_px of camera {} in {}",
-      stream, image.width_px, image.height_px, camera.width_px, camera.height_px, camera.name,
-      rig_file));
-}
-
-void CheckFirstImages(const Inputs& inputs, const ResolvedCameras& cameras,
-                      const TrackOptions& options) {
-  constexpr std::int64_t kTries = 10;  // the first images may be unreadable
-  const auto& rig = inputs.setup.rig.cameras;
-  bool left_seen = false, right_seen = false;
-  FramePair pair;
-  const std::int64_t end = std::min(options.start + kTries, inputs.recording->size());
-  for (std::int64_t i = options.start; i < end && !(left_seen && right_seen); ++i) {
-    inputs.recording->Read(i, pair);
-    if (!left_seen && !pair.left.image.empty()) {
-      CheckImageSize(pair.left.image.View(), rig[static_cast<std::size_t>(cameras.left.rig_camera)],
-                     cameras.left.path.string(), options.rig);
-      left_seen = true;
-    }
-    if (!right_seen && !pair.right.image.empty()) {
-      CheckImageSize(pair.right.image.View(),
-                     rig[static_cast<std::size_t>(cameras.right.rig_camera)],
-                     cameras.right.path.string(), options.rig);
-      right_seen = true;
-    }
-  }
-}
-
-Inputs LoadInputs(const TrackOptions& options) {
-  Inputs inputs;
-  inputs.setup.rig = LoadRig(options);
-  inputs.setup.body = LoadBody(options);
-  const ResolvedCameras cameras =
-      ResolveCameras(options.left, options.right, inputs.setup.rig, options.rig);
-  inputs.setup.left_camera = cameras.left.rig_camera;
-  inputs.setup.right_camera = cameras.right.rig_camera;
-  for (const auto& note : cameras.notes) spdlog::info(note);
-  inputs.recording = OpenRecording(cameras.left.path, cameras.right.path, {options.fps, true});
-  for (const auto& warning : inputs.recording->report().warnings) spdlog::warn(warning);
-  if (options.start >= inputs.recording->size()) {
-    throw UserError(fmt::format("--start: found {}, expected less than the {} frames of {}",
-                                options.start, inputs.recording->size(), options.left));
-  }
-  inputs.options.threads = options.threads;
-  inputs.options.first = options.start;
-  inputs.options.count = options.count;
-  CheckFirstImages(inputs, cameras, options);
-  return inputs;
-}
-
 std::string UtcNow() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
 
-RunRecord StartRecord(const Inputs& inputs, const CommonOptions& common) {
+RunRecord StartRecord(const TrackInputs& inputs, const CommonOptions& common) {
   const RecordingReport& report = inputs.recording->report();
   const auto& cameras = inputs.setup.rig.cameras;
   RunRecord record;
@@ -166,7 +70,7 @@ std::string DefaultRunName() {
 }
 
 // Measures into `writer`; a full disk ends the run early and is told by the result.
-std::optional<OutputError> Measure(const Inputs& inputs, const CommonOptions& common,
+std::optional<OutputError> Measure(const TrackInputs& inputs, const CommonOptions& common,
                                    RunWriter& writer, RunStatistics& statistics,
                                    RunSummary& summary) {
   const std::atomic<bool>& stop = CatchStopSignals();
@@ -217,7 +121,7 @@ int Finish(const RunSummary& summary, const RunStatistics& statistics, const fs:
 }
 
 int RunTrack(const TrackOptions& options, const CommonOptions& common) {
-  const Inputs inputs = LoadInputs(options);
+  const TrackInputs inputs = LoadTrackInputs(options);
   RunRecord record = StartRecord(inputs, common);
   const fs::path folder = options.output.empty() ? DefaultRunName() : options.output;
   RunWriter writer(folder, {inputs.setup.body, record.left_camera, record.right_camera},

@@ -20,7 +20,6 @@ void RatioReporter::ReportRuns(const std::vector<Run>& runs) {
   for (const Run& run : runs) {
     if (run.run_type != Run::RT_Iteration || run.error_occurred) continue;
     const std::string& name = run.run_name.function_name;
-    if (times_ms_.count(name) == 0) order_.push_back(name);
     times_ms_[name].push_back(run.real_accumulated_time / static_cast<double>(run.iterations) *
                               1e3);
   }
@@ -31,8 +30,7 @@ void RatioReporter::Finalize() {
   const double unit_ms = reference == times_ms_.end() ? 0 : Median(reference->second);
   std::printf("%-44s %10s %6s %12s\n", "benchmark", "median ms", "runs",
               ("/ " + reference_).c_str());
-  for (const std::string& name : order_) {
-    const auto& times_ms = times_ms_.at(name);
+  for (const auto& [name, times_ms] : times_ms_) {
     const double median_ms = Median(times_ms);
     std::printf("%-44s %10.4f %6zu", name.c_str(), median_ms, times_ms.size());
     std::printf(unit_ms > 0 ? " %12.2f\n" : "\n", median_ms / unit_ms);

@@ -19,7 +19,6 @@ class RatioReporter : public benchmark::BenchmarkReporter {
 
  private:
   std::string reference_;
-  std::vector<std::string> order_;
   std::map<std::string, std::vector<double>> times_ms_;
 };
 

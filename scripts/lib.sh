@@ -31,15 +31,23 @@ stage() {
   printf '%-24s %4d s\n' "$name" $((SECONDS - began))
 }
 
+# The last line of a log, without what is the same on every line of a build.
+last_line() {
+  local line
+  line=$(tail -n 1 "$1")
+  line=${line/Building CXX object /}
+  printf '%s' "${line/CMakeFiles\/*.dir\//}"
+}
+
 show_progress() {
   local name=$1 log=$2 began=$3 last=$SECONDS
   while kill -0 "$stage_pid" 2>/dev/null; do
     sleep 0.2
     if [[ -t 1 ]]; then
-      printf '\r\033[K%-24s %4d s  %.50s' "$name" $((SECONDS - began)) "$(tail -n 1 "$log")"
+      printf '\r\033[K%-24s %4d s  %.46s' "$name" $((SECONDS - began)) "$(last_line "$log")"
     elif ((SECONDS - last >= 30)); then
       last=$SECONDS
-      printf '%-24s %4d s … %.80s\n' "$name" $((SECONDS - began)) "$(tail -n 1 "$log")"
+      printf '%-24s %4d s … %.80s\n' "$name" $((SECONDS - began)) "$(last_line "$log")"
     fi
   done
   if [[ -t 1 ]]; then printf '\r\033[K'; fi

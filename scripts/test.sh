@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds and runs the tests of the labels unit, data and device.
 # usage: scripts/test.sh [--all]
-#   --all   also label slow, clang-format, clang-tidy (preset lint), ASan+UBSan (preset asan)
+#   --all   also label slow, clang-format, clang-tidy (preset lint), ASan+UBSan (preset asan), and
+#           TSan (preset tsan) on what reads and measures on several threads
 set -euo pipefail
 
 all=false
@@ -9,7 +10,7 @@ for argument in "$@"; do
   case $argument in
     --all) all=true ;;
     -h | --help)
-      sed -n '2,4s/^# //p' "${BASH_SOURCE[0]}"
+      sed -n '2,5s/^# //p' "${BASH_SOURCE[0]}"
       exit 0
       ;;
     *)
@@ -22,10 +23,13 @@ done
 . "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 cd "$root"
 
-# run_tests PRESET LABELS: ctest without a line for each test that passes.
+# run_tests PRESET LABELS [CTEST-OPTION…]: ctest without a line for each test that passes.
 run_tests() {
-  echo "ctest ($1): ${2//|/, }"
-  ctest --preset "$1" --label-regex "^($2)\$" --parallel "$(nproc)" | failures_and_summary
+  local preset=$1 labels=$2
+  shift 2
+  echo "ctest ($preset): ${labels//|/, }"
+  ctest --preset "$preset" --label-regex "^($labels)\$" --parallel "$(nproc)" "$@" |
+    failures_and_summary
 }
 
 check_format() {
@@ -56,3 +60,5 @@ stage "check format" check_format
 build_preset lint
 build_preset asan
 run_tests asan 'unit|data|device'
+build_preset tsan
+run_tests tsan 'unit|data' --tests-regex 'Recording|OrderedPairs|DecodeImage|PoseTracker|DetectBalls'

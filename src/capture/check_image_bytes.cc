@@ -61,7 +61,7 @@ std::string CheckBmp(const Bytes& bytes) {
   if (width <= 0 || height == 0) return "damaged BMP (size)";
   if (compressed) return "";
   const std::size_t row = (static_cast<std::size_t>(width) * bits + 31) / 32 * 4;
-  const std::size_t rows = static_cast<std::size_t>(height < 0 ? -std::int64_t{height} : height);
+  const auto rows = static_cast<std::size_t>(height < 0 ? -std::int64_t{height} : height);
   return bytes.size() < offset + row * rows ? "truncated BMP" : "";
 }
 

@@ -1,6 +1,5 @@
 #include "stereomotion/detection/estimate_noise.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +7,7 @@
 #include "ball_fitter.h"
 #include "classify_blob.h"
 #include "segment_blobs.h"
+#include "variance_line.h"
 
 namespace stereomotion {
 namespace {
@@ -27,34 +27,10 @@ constexpr int kPixelsPerCell = 20;
 constexpr double kDarkest_sigma = 1.0;
 constexpr int kFewestPixels = 200;
 
-/// Sums of one ball's pixels for the line variance = intercept + slope × mean; weights 1/(2 σ⁴) are
-/// those of squared normal residuals.
-struct LineSums {
-  Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
-  Eigen::Vector2d rhs = Eigen::Vector2d::Zero();
-  double scatter = 0;  ///< Σ r² / σ²
-  int pixels = 0;
-
-  void Add(double mean_dn, double variance_dn2, double expected_dn2, int count = 1) {
-    const double w = 0.5 * count / (expected_dn2 * expected_dn2);
-    const Eigen::Vector2d row(1, mean_dn);
-    normal += w * row * row.transpose();
-    rhs += w * variance_dn2 * row;
-    scatter += count * variance_dn2 / expected_dn2;
-    pixels += count;
-  }
-  void Add(const LineSums& other) {
-    normal += other.normal;
-    rhs += other.rhs;
-    pixels += other.pixels;
-  }
-  [[nodiscard]] double MeanScatter() const { return scatter / std::max(pixels, 1); }
-};
-
 /// Sums the squared residuals inside one ball.
-LineSums MeasureBall(const BallPatch& patch, const BallFit& fit, const SensorNoise& noise,
-                     double largest_residual_sigma) {
-  LineSums sums;
+VarianceLine MeasureBall(const BallPatch& patch, const BallFit& fit, const SensorNoise& noise,
+                         double largest_residual_sigma) {
+  VarianceLine sums;
   for (int i = 0; i < patch.size; ++i) {
     if (patch.weight[i] <= 0 || patch.depth[i] < kInside) continue;
     const BallModel::Vector row = patch.jacobian.row(i).matrix().cast<double>();
@@ -70,16 +46,16 @@ LineSums MeasureBall(const BallPatch& patch, const BallFit& fit, const SensorNoi
 }
 
 /// Sums the balls whose scatter is not far above the median's.
-LineSums SumOrdinary(const std::vector<LineSums>& balls) {
+VarianceLine SumOrdinary(const std::vector<VarianceLine>& balls) {
   std::vector<double> scatters;
-  for (const LineSums& ball : balls) {
-    if (ball.pixels > 0) scatters.push_back(ball.MeanScatter());
+  for (const VarianceLine& ball : balls) {
+    if (ball.pixels() > 0) scatters.push_back(ball.MeanScatter());
   }
-  LineSums sum;
+  VarianceLine sum;
   if (scatters.empty()) return sum;
   const auto middle = scatters.begin() + static_cast<std::ptrdiff_t>(scatters.size() / 2);
   std::nth_element(scatters.begin(), middle, scatters.end());
-  for (const LineSums& ball : balls) {
+  for (const VarianceLine& ball : balls) {
     if (ball.MeanScatter() <= kLargestScatterRatio * *middle) sum.Add(ball);
   }
   return sum;
@@ -101,7 +77,7 @@ ClippedNormal ClipAtZero(double alpha) {
 }
 
 /// Adds the background's cells, those left out that show more than noise (edges, balls, rods).
-void AddBackground(const BackgroundMap& map, const SensorNoise& noise, LineSums& sums) {
+void AddBackground(const BackgroundMap& map, const SensorNoise& noise, VarianceLine& sums) {
   for (std::size_t i = 0; i < map.level_dn.size(); ++i) {
     const double expected = noise.VarianceDn2(map.raw_level_dn[i]);
     const double sigma = std::sqrt(expected);
@@ -149,33 +125,14 @@ SensorNoise StartNoise(const std::vector<ImageView>& images, const DetectionOpti
   return noise;
 }
 
-/// Turns the fitted line into the sensor's terms; nothing where variance does not grow with light.
-std::optional<SensorNoise> FromLine(const LineSums& sums, double saturation_dn) {
-  const Eigen::Vector2d line = sums.normal.ldlt().solve(sums.rhs);
-  if (!line.allFinite()) return std::nullopt;
-  SensorNoise noise;
-  noise.saturation_dn = saturation_dn;
-  // A slope below the line's own uncertainty: read noise alone explains the images.
-  noise.gain_e_per_dn = 1 / std::max(line[1], 1e-6);
-  const double read_dn2 = line[0] - 1.0 / 12.0;
-  if (read_dn2 >= 0) {
-    noise.read_e = std::sqrt(read_dn2) * noise.gain_e_per_dn;
-  } else {
-    // The line meets the quantisation floor above grey value 0: that is where darkness lies.
-    noise.read_e = 0;
-    noise.black_dn = -read_dn2 * noise.gain_e_per_dn;
-  }
-  return noise;
-}
-
 std::optional<SensorNoise> RefineNoise(const std::vector<ImageView>& images,
                                        const SensorNoise& noise, const DetectionOptions& options,
                                        double largest_residual_sigma) {
   BackgroundMap background;
   Segmenter segmenter;
   BallFitter fitter;
-  std::vector<LineSums> balls;
-  LineSums outside;
+  std::vector<VarianceLine> balls;
+  VarianceLine outside;
   for (const ImageView& image : images) {
     EstimateBackground(image, noise, options.max_diameter_px, background);
     AddBackground(background, noise, outside);
@@ -188,10 +145,10 @@ std::optional<SensorNoise> RefineNoise(const std::vector<ImageView>& images,
       balls.push_back(MeasureBall(fitter.patch(), fit, noise, largest_residual_sigma));
     }
   }
-  LineSums sums = SumOrdinary(balls);
-  if (sums.pixels < kFewestPixels) return std::nullopt;
+  VarianceLine sums = SumOrdinary(balls);
+  if (sums.pixels() < kFewestPixels) return std::nullopt;
   sums.Add(outside);
-  return FromLine(sums, noise.saturation_dn);
+  return sums.ToNoise(noise.saturation_dn);
 }
 
 }  // namespace

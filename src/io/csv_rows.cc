@@ -83,7 +83,13 @@ void AppendDetection(std::int64_t frame, std::string_view camera, const MatchedD
   const BallObservation& blob = detection.observation;
   Row row(rows);
   row.Integer(frame).Text(camera).Text(StatusWord(blob.status)).NumbersOrEmpty(detection.center_px);
-  row.Upper(blob.covariance_px2).Numbers(blob.center_px).Number(blob.diameter_px());
+  // A blob that was not measured has a rough place, but no uncertainty that would hold.
+  if (blob.status == BlobStatus::kOk) {
+    row.Upper(blob.covariance_px2);
+  } else {
+    row.Empty(3);
+  }
+  row.Numbers(blob.center_px).Number(blob.diameter_px());
   row.Number(blob.chi2_dof).Number(blob.visible_fraction);
   if (detection.id.rod >= 0) {
     row.Text(body.rods.at(static_cast<std::size_t>(detection.id.rod)).name);

@@ -71,14 +71,13 @@ class Storage {
 RigCamera ReadCamera(const std::string& file, const Storage& storage, int number, cv::Size size) {
   const std::string digit = std::to_string(number);
   const std::string matrix_key = (storage.Has("M" + digit) ? "M" : "K") + digit;
+  const std::string distortion_key = "D" + digit;
   const cv::Mat k = storage.Matrix(matrix_key, 3, 3);
-  const cv::Mat d = storage.Matrix("D" + digit).reshape(1, 1);
-  for (int i = 5; i < d.cols; ++i) {
-    if (d.at<double>(i) != 0) {
-      throw UserError(file + ": D" + digit + ": found " + std::to_string(d.cols) +
-                      " coefficients, expected k1 k2 p1 p2 k3 (the rational, thin-prism and tilted "
-                      "models are not supported)");
-    }
+  const cv::Mat d = storage.Matrix(distortion_key).reshape(1, 1);
+  if (d.cols > 5 && cv::countNonZero(d.colRange(5, d.cols)) > 0) {
+    throw UserError(file + ": " + distortion_key + ": found " + std::to_string(d.cols) +
+                    " coefficients, expected k1 k2 p1 p2 k3 (the rational, thin-prism and tilted "
+                    "models are not supported)");
   }
   if (std::abs(k.at<double>(0, 1)) > 1e-9 || k.at<double>(2, 2) != 1) {
     throw UserError(file + ": " + matrix_key + ": expected [fx 0 cx; 0 fy cy; 0 0 1]");

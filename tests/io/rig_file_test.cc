@@ -190,6 +190,12 @@ TEST(RigFile, OpenCvErrors) {
   EXPECT_TRUE(Has(ErrorOf(Replaced(kOpenCv, "\nR:", "\nRR:"), "s.yml"), "the key 'R' is missing"));
   EXPECT_TRUE(Has(ErrorOf(Replaced(kOpenCv, "0., -1., 0.,", "0., -1.1, 0.,"), "s.yml"),
                   "expected a rotation"));
+  const auto eight = [](const char* last) {
+    return Replaced(Replaced(kOpenCv, "cols: 5", "cols: 8"), "0.23 ]",
+                    std::string("0.23, ") + last);
+  };
+  EXPECT_TRUE(Has(ErrorOf(eight("0., 0., 0.1 ]"), "s.yml"), "D1: found 8 coefficients"));
+  EXPECT_EQ(ErrorOf(eight("0., 0., 0. ]"), "s.yml"), "no error");
 }
 
 constexpr const char* kKalibr = R"(cam0:
