@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "stereomotion/geometry/so3.h"
@@ -87,6 +88,15 @@ double LargestBallShift(const Body& body, const Rigid3& a_world_from_body,
     }
   }
   return shift_mm;
+}
+
+double BallSigmaMm(const Body& body, const PoseEstimate& pose, const BallId& id) {
+  const Eigen::Vector3d reference_mm =
+      pose.free_axis_in_world ? BallInBody(body, {0, 0}) : Eigen::Vector3d(0, 0, 0);
+  Eigen::Matrix<double, 3, 6> d_ball;
+  d_ball << -Hat(pose.world_from_body.rotation * (BallInBody(body, id) - reference_mm)),
+      Eigen::Matrix3d::Identity();
+  return std::sqrt(std::max(0.0, (d_ball * pose.covariance * d_ball.transpose()).trace()));
 }
 
 }  // namespace stereomotion

@@ -44,6 +44,10 @@ Eigen::Quaterniond SmallestRotation(const Eigen::Quaterniond& from,
 /// Chooses a free roll closest to `previous`; does nothing where the roll is determined.
 void SetFreeRoll(const Body& body, const Rigid3& previous, PoseEstimate& pose);
 
+/// Propagates the pose's random covariance to the place of one ball: σ, all directions together
+/// [mm].
+double BallSigmaMm(const Body& body, const PoseEstimate& pose, const BallId& id);
+
 /// Finds the largest way that a ball goes between two placements of the body [mm].
 double LargestBallShift(const Body& body, const Rigid3& a_world_from_body,
                         const Rigid3& b_world_from_body);

@@ -13,7 +13,7 @@ namespace {
 
 void CheckOptions(const PoseOptions& options) {
   if (!(options.reject_sigma > 0) || options.max_iterations < 1 || options.min_balls < 1 ||
-      !(options.max_rms_px > 0) || !(options.min_redundancy >= 0)) {
+      !(options.max_rms_px > 0) || !(options.max_doubt_px > 0) || !(options.min_redundancy >= 0)) {
     throw std::invalid_argument("EstimatePose: an option is out of range");
   }
 }
@@ -48,15 +48,38 @@ PoseStatus CheckCarriers(const PoseProblem& problem, const Body& body, const Pos
   return PoseStatus::kOk;
 }
 
-PoseStatus CheckSolution(const PoseProblem& problem, const PoseSolution& solution, double rms_px,
-                         const PoseOptions& options) {
-  if (2 * solution.active <= solution.unknowns) return PoseStatus::kTooFewBalls;
+/// How well the images place the worst ball, σ in pixels, if the residuals' excess over the noise
+/// is taken as noise; 0 where there is no such excess.
+double DoubtPx(const PoseProblem& problem, const Body& body, const PoseEstimate& pose) {
+  constexpr double kExcess = 9;  // residuals three times what the covariances say
+  const double level = pose.chi2 / std::max(1, pose.dof);
+  if (level < kExcess) return 0;
+  const Rigid3 placement = BodyPlacement(body, pose);
+  double doubt_px = 0;
+  for (const PoseObservation& observation : problem.observations) {
+    const RigCamera& camera = *observation.camera;
+    const double depth_mm = (camera.cam_from_world * (placement * observation.p_in_body_mm)).z();
+    const double sigma_mm = BallSigmaMm(body, pose, observation.assignment.id);
+    doubt_px = std::max(doubt_px, std::sqrt(level) * sigma_mm * camera.model.fx_px / depth_mm);
+  }
+  return doubt_px;
+}
+
+PoseStatus CheckSolution(const PoseProblem& problem, const PoseSolution& solution, const Body& body,
+                         const PoseEstimate& pose, const PoseOptions& options) {
+  // Each dropped observation could have been the good one, unless more than its own two residuals
+  // speak against it.
+  const int dropped = static_cast<int>(problem.observations.size()) - solution.active;
+  const int needed_dof = dropped > 0 ? 4 + 2 * dropped : 1;
+  if (pose.dof < needed_dof) return PoseStatus::kTooFewBalls;
   // What most observations contradict is a wrong arrangement, however well the rest fits.
   if (2 * solution.active < static_cast<int>(problem.observations.size())) return PoseStatus::kLost;
   if (SmallestRedundancy(problem, solution) < options.min_redundancy) {
     return PoseStatus::kTooFewBalls;
   }
-  return rms_px > options.max_rms_px ? PoseStatus::kLost : PoseStatus::kOk;
+  const bool doubtful =
+      pose.rms_px > options.max_rms_px || DoubtPx(problem, body, pose) > options.max_doubt_px;
+  return doubtful ? PoseStatus::kLost : PoseStatus::kOk;
 }
 
 double RmsPx(const PoseProblem& problem, const PoseSolution& solution) {
@@ -119,7 +142,7 @@ Expected<PoseEstimate, PoseStatus> EstimatePose(
   }
   if (!solution) return Unexpected{PoseStatus::kLost};
   const PoseEstimate pose = Report(problem, *solution, initial_world_from_body);
-  const PoseStatus verdict = CheckSolution(problem, *solution, pose.rms_px, options);
+  const PoseStatus verdict = CheckSolution(problem, *solution, body, pose, options);
   if (verdict != PoseStatus::kOk) return Unexpected{verdict};
   if (used) {
     for (const PoseObservation& observation : problem.observations) {

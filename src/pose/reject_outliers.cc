@@ -74,13 +74,14 @@ struct Stage {
   PoseState state;
 };
 
-/// Deletes worst first as long as the rest determines the pose and at most half of all are gone.
+/// Deletes worst first as long as the rest determines the pose and at most a quarter of all is
+/// gone: half of all could be one camera, whose deletion "explains" a rig that is a little wrong.
 /// Several gross errors inflate the scale and hide each other there; the collapse of χ² shows them.
 /// Ends at once where nothing is wrong.
 std::vector<Stage> DeleteAndWatch(PoseProblem& problem, PoseState state, const PoseOptions& options,
                                   std::vector<std::size_t>& dropped) {
   std::vector<Stage> stages;
-  const std::size_t most = problem.observations.size() / 2;
+  const std::size_t most = problem.observations.size() / 4;
   while (true) {
     const auto solution = SolvePose(problem, state, options.max_iterations);
     if (!solution || 2 * solution->active <= solution->unknowns) return stages;

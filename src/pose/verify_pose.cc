@@ -5,7 +5,6 @@
 
 #include "pose/body_geometry.h"
 #include "stereomotion/camera/sphere_projection.h"
-#include "stereomotion/geometry/so3.h"
 
 namespace stereomotion {
 namespace {
@@ -15,16 +14,6 @@ bool SameAssignments(const std::vector<BallAssignment>& a, const std::vector<Bal
                     [](const BallAssignment& x, const BallAssignment& y) {
                       return x.id == y.id && x.camera == y.camera && x.detection == y.detection;
                     });
-}
-
-/// Standard deviation of a ball's position, all directions together.
-double BallSigmaMm(const Body& body, const PoseEstimate& pose, const BallId& id) {
-  const Eigen::Vector3d reference_mm =
-      pose.free_axis_in_world ? BallInBody(body, {0, 0}) : Eigen::Vector3d(0, 0, 0);
-  Eigen::Matrix<double, 3, 6> d_ball;
-  d_ball << -Hat(pose.world_from_body.rotation * (BallInBody(body, id) - reference_mm)),
-      Eigen::Matrix3d::Identity();
-  return std::sqrt(std::max(0.0, (d_ball * pose.covariance * d_ball.transpose()).trace()));
 }
 
 }  // namespace

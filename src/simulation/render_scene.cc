@@ -56,7 +56,8 @@ Exposure SampleExposure(const Scenario& scenario, int camera, double mid_s) {
     path_px = std::max(path_px, (middle_px - first[i].projection->center_px).norm() +
                                     (last[i].projection->center_px - middle_px).norm());
   }
-  const auto steps = static_cast<int>(std::clamp<double>(std::ceil(path_px / kStepPx), 1, kMaxSteps));
+  const auto steps =
+      static_cast<int>(std::clamp<double>(std::ceil(path_px / kStepPx), 1, kMaxSteps));
   Exposure exposure;
   for (int step = 0; step < steps; ++step) {
     const double time_s = mid_s + ((step + 0.5) / steps - 0.5) * exposure_s;

@@ -39,7 +39,7 @@ class CalibrationUncertaintyTest : public ::testing::Test {
   PoseEstimate Solve(const Rig& rig, const Body& body) const {
     PoseOptions all;  // the same observations, whatever the rig
     all.reject_sigma = 1e6;
-    all.max_rms_px = 1e3;
+    all.max_rms_px = all.max_doubt_px = 1e3;
     const auto pose = EstimatePose(rig.cameras[0], rig.cameras[1], body, pair_.left, pair_.right,
                                    pair_.truth, truth_, all);
     if (pose) return *pose;

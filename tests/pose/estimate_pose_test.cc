@@ -256,6 +256,31 @@ TEST_F(EstimatePoseTest, GrossErrorIsDropped) {
   }
 }
 
+TEST_F(EstimatePoseTest, AFarWrongRigIsNoReasonToDropACamera) {
+  // Tens of σ of epipolar error, as after a real calibration: either camera alone would fit by
+  // itself.
+  const Rig seen = rig_;
+  for (int trial = 0; trial < 200; ++trial) {
+    rig_ = seen;
+    for (RigCamera& camera : rig_.cameras) {
+      camera.model.cx_px += 0.5 * Normal(rng_);
+      camera.model.cy_px += 0.5 * Normal(rng_);
+      const Eigen::Vector3d turn_rad = 2e-4 * NormalVector<3>(rng_);
+      camera.cam_from_world.rotation = ExpSO3(turn_rad) * camera.cam_from_world.rotation;
+    }
+    const Rigid3 truth = RandomPose(rng_);
+    const ObservedPair pair =
+        Observe(seen.cameras[0], seen.cameras[1], body_, truth, observe_, rng_);
+    PoseOptions options;  // how wrong a rig may be is another matter
+    options.max_rms_px = options.max_doubt_px = 1e3;
+    const auto pose = EstimatePose(rig_.cameras[0], rig_.cameras[1], body_, pair.left, pair.right,
+                                   pair.truth, truth, options);
+    ASSERT_TRUE(pose) << trial << " " << static_cast<int>(pose.error());
+    EXPECT_GE(pose->balls_left, 7) << trial;
+    EXPECT_GE(pose->balls_right, 7) << trial;
+  }
+}
+
 TEST_F(EstimatePoseTest, WrongRigIsNoReasonToDropBalls) {
   const ObservedPair pair = See(truth_);
   rig_.cameras[1].cam_from_world.rotation =

@@ -105,9 +105,9 @@ RecordingScore Score(const RecordingRun& run) {
 
 std::string ScoreHeader() {
   return fmt::format(
-      "{:22} {:>11} {:>7} | {:>7} {:>7} {:>6} | {:>7} {:>7} {:>7} | {:>7} {:>7} {:>7} {:>7} | "
+      "{:26} {:>11} {:>7} | {:>7} {:>7} {:>6} | {:>7} {:>7} {:>7} | {:>7} {:>7} {:>7} {:>7} | "
       "{:^28} | {:^28} | {:^28}\n"
-      "{:22} {:>11} {:>7} | {:>7} {:>7} {:>6} | {:>7} {:>7} {:>7} | {:>7} {:>7} {:>7} {:>7} | "
+      "{:26} {:>11} {:>7} | {:>7} {:>7} {:>6} | {:>7} {:>7} {:>7} | {:>7} {:>7} {:>7} {:>7} | "
       "{:>6} {:>8} {:>6} {:>5} | {:>6} {:>8} {:>6} {:>5} | {:>6} {:>8} {:>6} {:>5}\n",
       "", "poses /", "centres", "worst", "worst", "worst", "RMSE u", "RMSE v", "worst", "pose",
       "stated", "turn", "stated", "centres", "3D points", "poses", "recording", "clear pairs",
@@ -117,8 +117,11 @@ std::string ScoreHeader() {
 }
 
 std::string ScoreRow(const std::string& name, const RecordingScore& score) {
+  if (score.poses == 0) {
+    return fmt::format("{:26} 0/{} (0): no pose\n", name, score.clear_pairs);
+  }
   return fmt::format(
-      "{:22} {:>11} {:7.1f} | {:7.4f} {:7.4f} {:6.4f} | {:7.5f} {:7.5f} {:7.5f} | {:7.4f} {:7.4f} "
+      "{:26} {:>11} {:7.1f} | {:7.4f} {:7.4f} {:6.4f} | {:7.5f} {:7.5f} {:7.5f} | {:7.4f} {:7.4f} "
       "{:8.5f} {:7.5f} | {} | {} | {}\n",
       name, fmt::format("{}/{} ({})", score.clear_poses, score.clear_pairs, score.poses),
       100.0 * score.centers.samples() / std::max(1, score.shown_centers), score.worst_origin_mm,

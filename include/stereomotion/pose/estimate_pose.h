@@ -26,6 +26,10 @@ struct PoseOptions {
   int min_balls = 4;  ///< distinct balls; one less for a body on one line (one unknown less)
   /// Residuals larger than this mean that balls are mistaken, not that the rig is a little wrong.
   double max_rms_px = 1.0;
+  /// Where the residuals exceed the noise, something is not modelled (a rig from a real calibration
+  /// may well be 40 σ wrong). If as noise it would place a ball no better than this (σ, seen in the
+  /// images), too little is left to tell a wrong pose.
+  double max_doubt_px = 1.0;
   /// Least share of a ball's measurement that the other balls must check. An error that just
   /// escapes `reject_sigma` moves the pose by at most reject_sigma × √((1 − share) / share) σ.
   double min_redundancy = 0.05;
@@ -45,12 +49,13 @@ Rigid3 BodyPlacement(const Body& body, const PoseEstimate& pose);
 /// of the whitened Hessian, never damped. Only observations with status kOk and a positive definite
 /// covariance count.
 ///
-/// kTooFewBalls: fewer than `min_balls`, or one ball alone decides on some direction
+/// kTooFewBalls: fewer than `min_balls`, too few to say which ones are false, or one ball alone
+/// decides on some direction
 /// (`min_redundancy`). kRollUndetermined: all used balls lie on one line, the body's do not. kLost:
 /// no convergence, more than half of the observations are gross errors, or residuals beyond
-/// `max_rms_px`. Throws std::invalid_argument for assignments that name nothing and bad options.
-/// All balls of the body on one line: the axis is free, see `PoseEstimate`; the rotation is then
-/// the smallest from `initial`.
+/// `max_rms_px` or `max_doubt_px`. Throws std::invalid_argument for assignments that name nothing
+/// and bad options. All balls of the body on one line: the axis is free, see `PoseEstimate`; the
+/// rotation is then the smallest from `initial`.
 Expected<PoseEstimate, PoseStatus> EstimatePose(
     const RigCamera& left, const RigCamera& right, const Body& body,
     const std::vector<BallObservation>& left_balls, const std::vector<BallObservation>& right_balls,
