@@ -122,6 +122,11 @@ BlobStatus Judge(const ImageView& image, const Blob& blob, const BallFit& fit,
   return misfit < kLargestMisfit ? BlobStatus::kOk : BlobStatus::kPoorFit;
 }
 
+/// How clearly a blob stands out: its contrast in units of the noise, averaged over its area.
+double Clarity(const Blob& blob) {
+  return (blob.peak_dn - blob.background_dn) / blob.noise_dn * std::sqrt(blob.area_px);
+}
+
 }  // namespace
 
 bool MayBeBall(const ImageView& image, const Blob& blob, const DetectionOptions& options) {
@@ -129,6 +134,22 @@ bool MayBeBall(const ImageView& image, const Blob& blob, const DetectionOptions&
   if (diameter < 0.7 * options.min_diameter_px || diameter > options.max_diameter_px) return false;
   const Moments moments = MomentsOf(blob);
   return moments.minor_px > kThinnestAxisRatio * moments.major_px && IsIsland(image, blob, moments);
+}
+
+void ChooseCandidates(const ImageView& image, const std::vector<Blob>& blobs,
+                      const DetectionOptions& options, std::vector<const Blob*>& candidates) {
+  candidates.clear();
+  for (const Blob& blob : blobs) {
+    if (MayBeBall(image, blob, options)) candidates.push_back(&blob);
+  }
+  if (static_cast<int>(candidates.size()) <= options.max_balls) return;
+  const auto end = candidates.begin() + options.max_balls;
+  std::nth_element(candidates.begin(), end, candidates.end(), [](const Blob* a, const Blob* b) {
+    const double clarity_a = Clarity(*a);
+    const double clarity_b = Clarity(*b);
+    return clarity_a != clarity_b ? clarity_a > clarity_b : a->label < b->label;
+  });
+  candidates.erase(end, candidates.end());
 }
 
 BallObservation ClassifyBall(const ImageView& image, const Blob& blob, const BallFit& fit,

@@ -17,6 +17,7 @@ struct BallDetector::Workspace {
   BackgroundMap background;
   Segmenter segmenter;
   BallFitter fitter;
+  std::vector<const Blob*> candidates;
 };
 
 BallDetector::BallDetector(const SensorNoise& noise, const DetectionOptions& options)
@@ -38,10 +39,10 @@ void BallDetector::Detect(const ImageView& image, std::vector<BallObservation>& 
   Workspace& w = *workspace_;
   EstimateBackground(image, w.noise, w.options.max_diameter_px, w.background);
   w.segmenter.Segment(image, w.background, w.options.threshold_sigma);
-  for (const Blob& blob : w.segmenter.blobs()) {
-    if (!MayBeBall(image, blob, w.options)) continue;
-    const BallFit& fit = w.fitter.Fit(image, w.segmenter, blob, w.noise);
-    balls.push_back(ClassifyBall(image, blob, fit, w.fitter.origin(), w.options));
+  ChooseCandidates(image, w.segmenter.blobs(), w.options, w.candidates);
+  for (const Blob* blob : w.candidates) {
+    const BallFit& fit = w.fitter.Fit(image, w.segmenter, *blob, w.noise);
+    balls.push_back(ClassifyBall(image, *blob, fit, w.fitter.origin(), w.options));
   }
   std::sort(balls.begin(), balls.end(), [](const BallObservation& a, const BallObservation& b) {
     return a.center_px.y() != b.center_px.y() ? a.center_px.y() < b.center_px.y()

@@ -131,16 +131,17 @@ std::optional<SensorNoise> RefineNoise(const std::vector<ImageView>& images,
   BackgroundMap background;
   Segmenter segmenter;
   BallFitter fitter;
+  std::vector<const Blob*> candidates;
   std::vector<VarianceLine> balls;
   VarianceLine outside;
   for (const ImageView& image : images) {
     EstimateBackground(image, noise, options.max_diameter_px, background);
     AddBackground(background, noise, outside);
     segmenter.Segment(image, background, options.threshold_sigma);
-    for (const Blob& blob : segmenter.blobs()) {
-      if (!MayBeBall(image, blob, options)) continue;
-      const BallFit& fit = fitter.Fit(image, segmenter, blob, noise);
-      const BallObservation ball = ClassifyBall(image, blob, fit, fitter.origin(), options);
+    ChooseCandidates(image, segmenter.blobs(), options, candidates);
+    for (const Blob* blob : candidates) {
+      const BallFit& fit = fitter.Fit(image, segmenter, *blob, noise);
+      const BallObservation ball = ClassifyBall(image, *blob, fit, fitter.origin(), options);
       if (ball.status != BlobStatus::kOk) continue;
       balls.push_back(MeasureBall(fitter.patch(), fit, noise, largest_residual_sigma));
     }

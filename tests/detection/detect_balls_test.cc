@@ -224,6 +224,20 @@ TEST(DetectBalls, BallWhollySaturatedInsideStillHasItsCentre) {
   }
 }
 
+TEST(DetectBalls, AmongTooManyBlobsTheClearestAreKept) {
+  auto rng = MakeTestRng();
+  auto balls = BallGrid(6, 6, 10, rng);
+  for (std::size_t i = 0; i < balls.size(); ++i)
+    balls[i].amplitude_dn = 40 + 4.0 * static_cast<double>(i);
+  Image image;
+  RenderBalls(balls, Canvas(6, 6, 10), image);
+  DetectionOptions options;
+  options.max_balls = 5;
+  const auto found = DetectBalls(image.View(), UsualNoise(), options);
+  ASSERT_EQ(found.size(), 5U);
+  for (const BallObservation& ball : found) EXPECT_GT(ball.amplitude_dn, 40 + 4 * 30);
+}
+
 TEST(BallDetector, RefusesANoiseModelWithoutGain) {
   EXPECT_THROW(BallDetector({0, 8, 0, 255}), std::invalid_argument);
 }

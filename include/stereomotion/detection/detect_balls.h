@@ -17,6 +17,9 @@ struct DetectionOptions {
   double min_axis_ratio = 0.6;  ///< of the fitted outline; beyond it is no ball seen by a camera
   double max_chi2_probability_exponent = 9;  ///< a fit worse than the 10^-x tail of χ² is flagged
   double min_signal_to_noise_db = 6;         ///< amplitude against background noise
+  /// Blobs that are fitted, the clearest ones first: bounds the time that a frame of noise can
+  /// take.
+  int max_balls = 200;
 };
 
 /// Detects balls in images of one camera; keeps its work memory between images, so that nothing is
