@@ -37,7 +37,8 @@ int FindCamera(const Rig& rig, const std::string& name) {
 std::string LastComponent(const std::string& argument) {
   fs::path path = fs::path(argument).lexically_normal();
   if (path.filename().empty()) path = path.parent_path();
-  return fs::is_regular_file(path) ? path.stem().string() : path.filename().string();
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored) ? path.stem().string() : path.filename().string();
 }
 
 ResolvedCamera Resolve(const std::string& option, const std::string& argument, const Rig& rig,

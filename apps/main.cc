@@ -5,10 +5,13 @@
 #include <cstdio>
 #include <exception>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "commands.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/output_error.h"
+#include "stereomotion/io/suggest.h"
 #include "version.h"
 
 namespace stereomotion::app {
@@ -45,6 +48,15 @@ int RunGuarded(const Run& run, const CommonOptions& options) {
   }
 }
 
+// CLI11 would only say that a subcommand is required.
+void RequireKnownCommand(int argc, char** argv, const std::map<std::string, Run>& commands) {
+  if (argc < 2 || argv[1][0] == '-' || commands.count(argv[1]) > 0) return;
+  std::vector<std::string> names;
+  for (const auto& [name, run] : commands) names.push_back(name);
+  throw UserError(fmt::format("this version has no command '{}', expected one of {}{}", argv[1],
+                              fmt::join(names, ", "), DidYouMean(argv[1], names)));
+}
+
 int Main(int argc, char** argv) {
   CLI::App app("Measures the motion of a rigid body with two cameras.", "stereomotion");
   app.set_version_flag("--version", std::string("stereomotion ") + kVersion);
@@ -55,6 +67,7 @@ int Main(int argc, char** argv) {
   const std::map<std::string, Run> commands = {{"track", AddTrackCommand(app)},
                                                {"simulate", AddSimulateCommand(app)}};
   for (const auto& [name, run] : commands) AddCommonOptions(*app.get_subcommand(name), options);
+  RequireKnownCommand(argc, argv, commands);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

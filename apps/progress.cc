@@ -17,7 +17,9 @@ constexpr std::int64_t kWidth = 30;
 Progress::Progress(std::int64_t total, bool quiet)
     : total_(total), shown_(!quiet && total > 0 && isatty(STDERR_FILENO) == 1) {}
 
-Progress::~Progress() {
+Progress::~Progress() { Clear(); }
+
+void Progress::Clear() const {
   if (shown_) std::fputs("\r\x1b[K", stderr);
 }
 

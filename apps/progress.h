@@ -16,6 +16,9 @@ class Progress {
   /// Counts one more pair; redraws at most ten times a second.
   void Step();
 
+  /// Takes the bar away, so that a message gets a line of its own; the next `Step` brings it back.
+  void Clear() const;
+
  private:
   void Draw(double elapsed_s) const;
 

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "commands.h"
+#include "number_within.h"
 #include "progress.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/output_error.h"
@@ -94,7 +95,7 @@ Run AddSimulateCommand(CLI::App& app) {
   simulate->add_option("--output", options->output, "Folder for the recording")->required();
   simulate
       ->add_option("--threads", options->threads, "Threads; 0: one a core. Images do not change")
-      ->check(CLI::NonNegativeNumber)
+      ->check(WholeNumberWithin(0, kMostThreads))
       ->capture_default_str();
   simulate->add_flag("--force", options->force, "Overwrite an existing output");
   simulate->footer("Example: stereomotion simulate calib/scenario.yaml --output rec");

@@ -8,10 +8,10 @@
 #include <ctime>
 #include <memory>
 #include <optional>
-#include <set>
 #include <thread>
 
 #include "commands.h"
+#include "number_within.h"
 #include "progress.h"
 #include "run_statistics.h"
 #include "stereomotion/capture/recording.h"
@@ -27,6 +27,8 @@ namespace stereomotion::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::int64_t kReasonsToTell = 3;
 
 std::string UtcNow() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
@@ -78,10 +80,12 @@ std::optional<OutputError> Measure(const TrackInputs& inputs, const CommonOption
   const std::int64_t wanted = inputs.options.count;
   Progress progress(wanted < 0 ? rest : std::min(wanted, rest), common.quiet);
   std::optional<OutputError> failure;
-  std::set<std::string> told;
+  std::int64_t unreadable = 0;
   const MeasurementSink sink = [&](const PairMeasurement& measurement) {
-    if (!measurement.detail.empty() && told.insert(measurement.detail).second) {
-      spdlog::debug("frame {}: {}", measurement.frame, measurement.detail);
+    if (!measurement.detail.empty() && ++unreadable <= kReasonsToTell) {
+      progress.Clear();
+      spdlog::warn("frame {} is lost: {}{}", measurement.frame, measurement.detail,
+                   unreadable == kReasonsToTell ? " (more such frames are only counted)" : "");
     }
     try {
       writer.Write(measurement);
@@ -148,11 +152,13 @@ Run AddTrackCommand(CLI::App& app) {
   track->add_option("--output", options->output,
                     "Folder for the results; run-DATE-TIME by default");
   track->add_option("--fps", options->fps, "Frames a second, where the recording has no times")
-      ->check(CLI::PositiveNumber);
-  track->add_option("--start", options->start, "First pair, from 0")->check(CLI::NonNegativeNumber);
-  track->add_option("--count", options->count, "How many pairs")->check(CLI::PositiveNumber);
+      ->check(NumberWithin(kLowestFps, kHighestFps));
+  track->add_option("--start", options->start, "First pair, from 0")
+      ->check(WholeNumberWithin(0, kMostFrames));
+  track->add_option("--count", options->count, "How many pairs")
+      ->check(WholeNumberWithin(1, kMostFrames));
   track->add_option("--threads", options->threads, "Threads; 0: one a core. Results do not change")
-      ->check(CLI::NonNegativeNumber)
+      ->check(WholeNumberWithin(0, kMostThreads))
       ->capture_default_str();
   track->add_flag("--force", options->force, "Overwrite an existing output");
   track->footer(

@@ -17,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 Rig LoadRig(const TrackOptions& options) {
-  if (!fs::exists(options.rig)) {
+  std::error_code ignored;
+  if (!fs::exists(options.rig, ignored)) {
     throw UserError(options.rig +
                     ": no such file, expected the calibrated cameras; give --rig FILE (the format "
                     "stands in docs/formats.md, an example in calib/rig.yaml; OpenCV, Kalibr and "
@@ -44,6 +45,19 @@ void CheckImageSize(const ImageView& image, const RigCamera& camera, const std::
       "{}: found images of {} x {} px, expected {} x {} px, the image_size_px of camera {} in {}",
       stream, image.width_px, image.height_px, camera.width_px, camera.height_px, camera.name,
       rig_file));
+}
+
+void CheckRange(const TrackOptions& options, std::int64_t frames) {
+  if (options.start < 0 || options.start >= frames) {
+    throw UserError(fmt::format("--start: found {}, expected 0 to {}: {} has {} frames",
+                                options.start, frames - 1, options.left, frames));
+  }
+  const std::int64_t rest = frames - options.start;
+  if (options.count > rest) {
+    throw UserError(
+        fmt::format("--count: found {}, expected 1 to {}: {} has {} frames from --start {} on",
+                    options.count, rest, options.left, rest, options.start));
+  }
 }
 
 void CheckFirstImages(const TrackInputs& inputs, const ResolvedCameras& cameras,
@@ -82,10 +96,7 @@ TrackInputs LoadTrackInputs(const TrackOptions& options) {
   for (const auto& note : cameras.notes) spdlog::info(note);
   inputs.recording = OpenRecording(cameras.left.path, cameras.right.path, {options.fps, true});
   for (const auto& warning : inputs.recording->report().warnings) spdlog::warn(warning);
-  if (options.start >= inputs.recording->size()) {
-    throw UserError(fmt::format("--start: found {}, expected less than the {} frames of {}",
-                                options.start, inputs.recording->size(), options.left));
-  }
+  CheckRange(options, inputs.recording->size());
   inputs.options.threads = options.threads;
   inputs.options.first = options.start;
   inputs.options.count = options.count;

@@ -27,8 +27,8 @@ Scenario MakeScene(int rods) {
     rod.ball_diameter_mm = 14;
     for (const double place_mm : kPlaces_mm) {
       // Every rod a little longer than the one before, so that no two are alike.
-      rod.balls_in_body_mm.push_back(
-          {place_mm * (1 + 0.06 * r), -150.0 + 95 * r, 30.0 * (r % 2) + 0.2 * place_mm * r});
+      rod.balls_in_body_mm.emplace_back(place_mm * (1 + 0.06 * r), -150.0 + 95 * r,
+                                        30.0 * (r % 2) + 0.2 * place_mm * r);
     }
     scene.body.rods.push_back(rod);
   }

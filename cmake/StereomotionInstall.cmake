@@ -26,6 +26,9 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE
         DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/libstereomotion-dev RENAME copyright
         COMPONENT development)
+# The pages that the program's messages point to.
+install(FILES ${PROJECT_SOURCE_DIR}/docs/formats.md ${PROJECT_SOURCE_DIR}/docs/conventions.md
+        DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/stereomotion COMPONENT runtime)
 if(EXISTS ${PROJECT_SOURCE_DIR}/calib)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/calib DESTINATION ${CMAKE_INSTALL_DATADIR}/stereomotion
           COMPONENT runtime)

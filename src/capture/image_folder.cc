@@ -59,6 +59,26 @@ std::size_t CountCommon(const std::vector<FrameInfo>& rows,
       }));
 }
 
+std::string Ranges(const std::vector<FrameInfo>& rows, const std::vector<std::int64_t>& numbers) {
+  return "the rows are frames " + std::to_string(rows.front().index) + " to " +
+         std::to_string(rows.back().index) + ", the names are numbered " +
+         std::to_string(numbers.front()) + " to " + std::to_string(numbers.back());
+}
+
+// Both ends off in the same direction: counting from 0 here and from 1 there looks like that.
+bool LooksShifted(const std::vector<FrameInfo>& rows, const std::vector<std::int64_t>& numbers) {
+  const bool later = numbers.front() > rows.front().index && numbers.back() > rows.back().index;
+  const bool earlier = numbers.front() < rows.front().index && numbers.back() < rows.back().index;
+  return later || earlier;
+}
+
+std::string ShiftTakenInOrder(const fs::path& csv, const std::vector<FrameInfo>& rows,
+                              const std::vector<std::int64_t>& numbers) {
+  return csv.string() + ": " + Ranges(rows, numbers) +
+         ": as many and shifted alike, so they are taken in order, the first row for the first "
+         "image; if images are missing at one end, the times are wrong";
+}
+
 Listing MatchByNumber(const fs::path& csv, const std::vector<FrameInfo>& rows, const Files& files,
                       const std::vector<std::int64_t>& numbers, std::size_t common) {
   Listing listing{rows, Files(rows.size()), {}};
@@ -75,20 +95,33 @@ Listing MatchByNumber(const fs::path& csv, const std::vector<FrameInfo>& rows, c
     listing.warnings.push_back(csv.string() + ": " + std::to_string(files.size() - common) +
                                " images have no row, so no time; they are left out");
   }
+  if (LooksShifted(rows, numbers)) {
+    listing.warnings.push_back(csv.string() + ": " + Ranges(rows, numbers) +
+                               ": matched by number, but names and rows may be shifted (counted "
+                               "from another start); then every image has a wrong time");
+  }
   return listing;
 }
 
 Listing ListWithTimes(const fs::path& csv, const Files& files) {
   const std::vector<FrameInfo> rows = ReadTimestamps(csv);
   const auto numbers = FrameNumbers(files);
-  if (!numbers || IsConstantShift(rows, *numbers)) {
+  const std::string found = csv.string() + ": found " + std::to_string(rows.size()) + " rows for " +
+                            std::to_string(files.size()) + " images";
+  if (!numbers) {
     if (rows.size() == files.size()) return {rows, files, {}};
-  } else if (const std::size_t common = CountCommon(rows, *numbers); common > 0) {
-    return MatchByNumber(csv, rows, files, *numbers, common);
+    throw UserError(found + " whose names do not number them, expected a row an image");
   }
-  throw UserError(csv.string() + ": found " + std::to_string(rows.size()) + " rows for " +
-                  std::to_string(files.size()) +
-                  " images whose names do not number them, expected a row an image");
+  const std::size_t common = CountCommon(rows, *numbers);
+  if (IsConstantShift(rows, *numbers)) {
+    Listing listing{rows, files, {}};
+    const bool shifted = common > 0 && common < rows.size();
+    if (shifted) listing.warnings.push_back(ShiftTakenInOrder(csv, rows, *numbers));
+    return listing;
+  }
+  if (common > 0) return MatchByNumber(csv, rows, files, *numbers, common);
+  throw UserError(found + ": " + Ranges(rows, *numbers) +
+                  "; expected the same numbers, or a row an image");
 }
 
 Listing ListByRate(const fs::path& folder, const Files& files, double fps) {
@@ -119,7 +152,8 @@ class ImageFolder : public FrameStream {
     const Files files = ListImages(folder);
     numbered_ = FrameNumbers(files).has_value();
     const fs::path csv = folder / "timestamps.csv";
-    has_timestamps_ = fs::exists(csv);
+    std::error_code ignored;
+    has_timestamps_ = fs::exists(csv, ignored);
     listing_ = has_timestamps_ ? ListWithTimes(csv, files) : ListByRate(folder, files, options.fps);
     digests_.resize(hash_images_ ? listing_.files.size() : 0);
   }

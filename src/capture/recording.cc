@@ -1,11 +1,14 @@
 #include "stereomotion/capture/recording.h"
 
 #include <algorithm>
+#include <locale>
 #include <map>
+#include <sstream>
 #include <stdexcept>
 
 #include "frame_stream.h"
 #include "stereomotion/capture/pair_frames.h"
+#include "stereomotion/capture/read_image.h"
 #include "stereomotion/core/user_error.h"
 
 namespace stereomotion {
@@ -18,8 +21,20 @@ constexpr std::int64_t kPeriodOfSingleFramesNs = 20'000'000;
 
 std::unique_ptr<FrameStream> OpenStream(const fs::path& path, const StreamOptions& options) {
   if (path.empty()) throw UserError("an empty name, expected a folder of images or a video file");
-  if (fs::is_regular_file(path)) return OpenVideo(path, options);
-  return OpenImageFolder(path, options);
+  std::error_code ignored;
+  if (!fs::is_regular_file(path, ignored)) return OpenImageFolder(path, options);
+  if (!IsImageFile(path)) return OpenVideo(path, options);
+  throw UserError(path.string() +
+                  ": found a single image, expected a folder of images or a video file");
+}
+
+void RequireRate(double fps) {
+  if (fps == 0 || (fps >= kLowestFps && fps <= kHighestFps)) return;
+  std::ostringstream text;
+  text.imbue(std::locale::classic());
+  text << "--fps: found " << fps << ", expected " << kLowestFps << " to " << kHighestFps
+       << " frames a second";
+  throw UserError(text.str());
 }
 
 std::vector<std::int64_t> Times(const FrameStream& stream) {
@@ -48,6 +63,10 @@ bool NumbersTell(const FrameStream& left, const FrameStream& right) {
   return false;
 }
 
+std::string NumberRange(const std::vector<FrameInfo>& frames) {
+  return std::to_string(frames.front().index) + " to " + std::to_string(frames.back().index);
+}
+
 std::vector<std::int64_t> ByNumber(const FrameStream& left, const FrameStream& right) {
   std::map<std::int64_t, std::int64_t> place;
   for (const FrameInfo& frame : right.frames()) {
@@ -69,6 +88,7 @@ class StreamPair : public Recording {
     RequireSameClocks(left, right);
     Pair();
     Report(left, right);
+    WarnOfAssumptions(left, right, options);
   }
 
   std::int64_t size() const override { return static_cast<std::int64_t>(partner_.size()); }
@@ -125,6 +145,7 @@ class StreamPair : public Recording {
       partner_ = PairByTime(left_ns, right_ns, (period_ns + 1) / 2);
     } else if (NumbersTell(*left_, *right_)) {
       partner_ = ByNumber(*left_, *right_);
+      paired_by_number_ = true;
     } else {
       partner_ = ByPosition(left_ns.size(), right_ns.size());
     }
@@ -148,14 +169,33 @@ class StreamPair : public Recording {
                        std::to_string(report_.unpaired_right) + " right frames have no partner";
     if (report_.pairs == 0) {
       text += "; no pair at all: do both cameras' timestamps come from one clock?";
+    } else if (paired_by_number_) {
+      text += "; paired by the numbers in the names, as there is no timestamps.csv";
     } else if (!report_.paired_by_time) {
-      text += "; without timestamps.csv nothing tells when frames were lost";
+      text += "; paired in order: without timestamps.csv nothing tells when frames were lost";
     }
     report_.warnings.push_back(text);
+  }
+  void WarnOfAssumptions(const fs::path& left, const fs::path& right,
+                         const RecordingOptions& options) {
+    if (report_.paired_by_time && options.fps > 0) {
+      report_.warnings.push_back("--fps is not used: " + (left / "timestamps.csv").string() +
+                                 " and the right camera's give the times");
+    }
+    const bool by_position = !report_.paired_by_time && !paired_by_number_;
+    if (!by_position || !left_->is_numbered() || !right_->is_numbered()) return;
+    const auto &a = left_->frames(), &b = right_->frames();
+    if (a.front().index == b.front().index) return;
+    report_.warnings.push_back(
+        "the names number the images of " + left.string() + " " + NumberRange(a) + ", of " +
+        right.string() + " " + NumberRange(b) +
+        ": paired in order, the first with the first; if a camera lost frames at an end, the pairs "
+        "are wrong: name partners alike, or add timestamps.csv");
   }
 
   std::unique_ptr<FrameStream> left_;
   std::unique_ptr<FrameStream> right_;
+  bool paired_by_number_ = false;
   std::vector<std::int64_t> partner_;  // a left frame's right one, or −1
   RecordingReport report_;
 };
@@ -164,6 +204,7 @@ class StreamPair : public Recording {
 
 std::unique_ptr<Recording> OpenRecording(const fs::path& left, const fs::path& right,
                                          const RecordingOptions& options) {
+  RequireRate(options.fps);
   std::error_code ignored;
   if (fs::equivalent(left, right, ignored)) {
     throw UserError(left.string() + ": left and right are the same, expected two cameras");

@@ -14,7 +14,9 @@ constexpr double kPixelVariance_px2 = 1.0 / 12.0;
 constexpr double kThinnestAxisRatio = 0.25;
 /// Less than this share of a ball bright: something stands before it.
 constexpr double kSmallestVisibleFraction = 0.9;
-/// Excess of the residuals over the noise, against the amplitude, that no real lens explains.
+/// Excess of the residuals over the noise, in units of the background's noise, against the
+/// amplitude, that no real lens explains. (At the limb, where a misfit sits, the noise is about
+/// twice the background's.)
 constexpr double kLargestMisfit = 0.02;
 
 struct Moments {

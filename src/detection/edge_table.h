@@ -27,6 +27,8 @@ class EdgeTable {
   [[nodiscard]] EdgeValue At(float z) const {
     const float inside = z < kMax ? z : kMax;
     const float clamped = inside > kMin ? inside : kMin;
+    // Not negative, so that cutting off rounds; lround would not vectorise.
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings)
     const int i = static_cast<int>((clamped - kMin) * kPerUnit + 0.5F);
     const float z0 = kMin + static_cast<float>(i) * (1.0F / kPerUnit);
     const float d = clamped - z0;

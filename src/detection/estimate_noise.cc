@@ -6,6 +6,7 @@
 #include "background_map.h"
 #include "ball_fitter.h"
 #include "classify_blob.h"
+#include "rounded_normal.h"
 #include "segment_blobs.h"
 #include "variance_line.h"
 
@@ -25,6 +26,10 @@ constexpr int kPasses = 4;
 constexpr int kPixelsPerCell = 20;
 /// Closer to grey value 0 than this too much of the noise is cut off to be made good.
 constexpr double kDarkest_sigma = 1.0;
+/// Below this variance [DN²] rounding does not simply add 1/12.
+constexpr double kCoarse_dn2 = 0.6;
+/// So far above 0 nothing of the noise is cut off.
+constexpr double kUnclipped_sigma = 4;
 constexpr int kFewestPixels = 200;
 
 /// Sums the squared residuals inside one ball.
@@ -76,6 +81,27 @@ ClippedNormal ClipAtZero(double alpha) {
   return {mean, (alpha * alpha + 1) * above + alpha * density - mean * mean};
 }
 
+/// Adds a cell whose noise is so small that the place of its level between two grey values decides
+/// how much rounding adds (less than nothing at a whole one). The line is linearised about the
+/// noise so far: a cell that rounding has made blind to the noise weighs nothing.
+void AddCoarselyRounded(double level_dn, double variance_dn2, double expected_dn2,
+                        VarianceLine& sums) {
+  constexpr double kSheppard_dn2 = 1.0 / 12.0;
+  constexpr double kSmallest_dn2 = 1e-3;
+  constexpr double kBlind = 0.2;
+  const double light_dn2 = std::max(expected_dn2 - kSheppard_dn2, kSmallest_dn2);
+  double mean_dn = level_dn;
+  for (int k = 0; k < 3; ++k) mean_dn += level_dn - RoundNormal(mean_dn, light_dn2).mean;
+  const RoundedNormal rounded = RoundNormal(mean_dn, light_dn2);
+  const double step_dn2 = 0.05 * light_dn2;
+  const double slope = (RoundNormal(mean_dn, light_dn2 + step_dn2).variance -
+                        RoundNormal(mean_dn, light_dn2 - step_dn2).variance) /
+                       (2 * step_dn2);
+  if (slope < kBlind) return;
+  sums.Add(mean_dn, light_dn2 + kSheppard_dn2 + (variance_dn2 - rounded.variance) / slope,
+           std::sqrt(rounded.squares_variance / 2) / slope, kPixelsPerCell);
+}
+
 /// Adds the background's cells, those left out that show more than noise (edges, balls, rods).
 void AddBackground(const BackgroundMap& map, const SensorNoise& noise, VarianceLine& sums) {
   for (std::size_t i = 0; i < map.level_dn.size(); ++i) {
@@ -88,7 +114,11 @@ void AddBackground(const BackgroundMap& map, const SensorNoise& noise, VarianceL
     const double level = alpha * sigma;
     const double variance = map.raw_variance_dn2[i] / ClipAtZero(alpha).variance_ratio;
     if (variance > kLargestScatterRatio * expected) continue;
-    sums.Add(level, variance, expected, kPixelsPerCell);
+    if (expected < kCoarse_dn2 && alpha > kUnclipped_sigma) {
+      AddCoarselyRounded(level, variance, expected, sums);
+    } else {
+      sums.Add(level, variance, expected, kPixelsPerCell);
+    }
   }
 }
 

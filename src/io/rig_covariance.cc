@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "rig_formats.h"
-#include "suggest.h"
+#include "stereomotion/io/suggest.h"
 
 namespace stereomotion {
 namespace {

@@ -10,12 +10,16 @@ namespace {
 
 // The first line tells FileStorage (`%YAML:1.0`, `<?xml`) apart: yaml-cpp would choke on it.
 std::string FirstLine(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    throw UserError(file.string() + ": found a folder, expected a rig file");
+  }
   std::ifstream stream(file);
   std::string line;
-  if (!stream || std::filesystem::is_directory(file)) {
+  std::getline(stream, line);
+  if (!stream.is_open() || stream.bad()) {
     throw UserError(file.string() + ": cannot be read, expected a rig file");
   }
-  std::getline(stream, line);
   return line;
 }
 

@@ -1,4 +1,4 @@
-#include "suggest.h"
+#include "stereomotion/io/suggest.h"
 
 #include <algorithm>
 

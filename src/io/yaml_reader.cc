@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <sstream>
 
 #include "stereomotion/core/user_error.h"
-#include "suggest.h"
+#include "stereomotion/io/suggest.h"
 
 namespace stereomotion {
 namespace {
@@ -25,14 +27,27 @@ std::string Shown(double number) {
   return stream.str();
 }
 
+// Reads the whole file first: a failing disk or a folder must not surface inside the parser.
+std::string ReadText(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(file, ignored)) {
+    throw UserError(file.string() + ": found a folder, expected a YAML file");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw UserError(file.string() + ": cannot be read, expected a YAML file");
+  try {
+    return {std::istreambuf_iterator<char>(stream), {}};
+  } catch (const std::ios_base::failure&) {
+    throw UserError(file.string() + ": cannot be read to its end, expected a YAML file");
+  }
+}
+
 }  // namespace
 
 YamlReader YamlReader::Load(const std::filesystem::path& file) {
+  const std::string text = ReadText(file);
   try {
-    YAML::Node node = YAML::LoadFile(file.string());
-    return {file, node, "", 1};
-  } catch (const YAML::BadFile&) {
-    throw UserError(file.string() + ": cannot be read, expected a YAML file");
+    return {file, YAML::Load(text), "", 1};
   } catch (const YAML::Exception& error) {
     throw UserError(file.string() + ":" + std::to_string(error.mark.line + 1) +
                     ": is not valid YAML (" + error.msg + ")");

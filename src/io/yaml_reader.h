@@ -43,8 +43,8 @@ class YamlReader {
   [[nodiscard]] std::string Place() const;  ///< "rig.yaml:12: cameras[0].name"
 
  private:
-  YamlReader(std::filesystem::path file, YAML::Node node, std::string path, int line)
-      : file_(std::move(file)), node_(std::move(node)), path_(std::move(path)), line_(line) {}
+  YamlReader(std::filesystem::path file, const YAML::Node& node, std::string path, int line)
+      : file_(std::move(file)), node_(node), path_(std::move(path)), line_(line) {}
   [[nodiscard]] YamlReader Child(const YAML::Node& node, const std::string& path) const;
   [[nodiscard]] std::string Found() const;
   [[nodiscard]] std::string KeyPath(const std::string& key) const;

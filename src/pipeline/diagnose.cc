@@ -45,6 +45,13 @@ std::string SwappedMessage(const RigCamera& left, const RigCamera& right) {
          "' the body is found. Exchange --left and --right, or the folders' names";
 }
 
+std::string Short(double number) {
+  std::string text = std::to_string(number);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.back() == '.') text.pop_back();
+  return text;
+}
+
 std::string Count(std::size_t n, const char* what) { return std::to_string(n) + " " + what; }
 
 }  // namespace
@@ -63,18 +70,19 @@ std::string DiagnoseFailure(const MeasureSetup& setup, const MeasureOptions& opt
     return "no balls were detected in the " + std::string(seen_left == 0 ? "left" : "right") +
            " images of the first pairs: check light, focus and exposure";
   }
+  // Swapped on purpose: would the exchanged cameras do better?
+  // NOLINTNEXTLINE(readability-suspicious-call-argument)
   if (AnyPose(right, left, setup.body, pairs, options.tracker.acquire))
     return SwappedMessage(left, right);
   for (const double factor : {1000.0, 0.001, 10.0, 0.1, 25.4}) {
     if (!AnyPose(left, right, Scaled(setup.body, factor), pairs, options.tracker.acquire)) continue;
-    return "the body file's lengths are in the wrong unit: multiplied by " +
-           std::to_string(factor) + " they fit the images (lengths are in millimetres)";
+    return "the body file's lengths are in the wrong unit: multiplied by " + Short(factor) +
+           " they fit the images (lengths are in millimetres)";
   }
   const double radius_mm = setup.body.rods.front().ball_diameter_mm / 2;
   const MatchOptions& match = options.tracker.acquire.match;
   const std::size_t found = CountCandidates(left, right, radius_mm, pairs, match);
-  const std::size_t swapped = CountCandidates(right, left, radius_mm, pairs, match);
-  if (swapped > 3 * found + 3) return SwappedMessage(left, right);
+  // NOLINTNEXTLINE(readability-suspicious-call-argument)
   if (found == 0) {
     return Count(seen_left, "balls in the left and ") +
            Count(seen_right, "in the right images have no epipolar match: ") +

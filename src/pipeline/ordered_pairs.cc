@@ -35,7 +35,9 @@ OrderedPairs::OrderedPairs(const PairSource& source, const Settings& settings)
   for (int i = 0; i < std::max(settings.threads, 1); ++i) workers_.emplace_back([this] { Work(); });
 }
 
-OrderedPairs::~OrderedPairs() {
+OrderedPairs::~OrderedPairs() { Stop(); }
+
+void OrderedPairs::Stop() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     stop_ = true;

@@ -51,6 +51,7 @@ class OrderedPairs {
     bool ready = false;
   };
   void Work();
+  void Stop();
   Slot& SlotOf(std::int64_t position) {
     return slots_[static_cast<std::size_t>(position) % slots_.size()];
   }

@@ -55,6 +55,15 @@ double ExplainedShare(const PoseView& view, const PoseFix& fix) {
   return static_cast<double>(fix.used.size()) / std::max(1, expected);
 }
 
+/// So many balls that one camera measures well and the pose explains none of say that this camera
+/// or the pose is wrong.
+constexpr std::ptrdiff_t kBallsThatContradict = 3;
+
+std::ptrdiff_t CountMeasured(const std::vector<BallObservation>& balls) {
+  return std::count_if(balls.begin(), balls.end(),
+                       [](const BallObservation& ball) { return ball.status == BlobStatus::kOk; });
+}
+
 }  // namespace
 
 PoseTracker::PoseTracker(RigCamera left, RigCamera right, Body body, TrackerOptions options)
@@ -103,8 +112,22 @@ Expected<PoseFix, PoseStatus> PoseTracker::Track(std::int64_t timestamp_ns,
   if (!fix) return fix;
   SetFreeRoll(body_, previous, fix->pose);
   before_last_ = last_;
+  // Roughly right even where it is withheld: good enough to predict from.
   last_ = TimedPose{timestamp_ns, BodyPlacement(body_, fix->pose)};
+  if (IsInconsistent({left_, right_, body_, left_balls, right_balls}, *fix)) {
+    return Unexpected{PoseStatus::kInconsistent};
+  }
+  if (fix->pose.dof > 0) levels_.Add(fix->pose.chi2 / fix->pose.dof);
   return fix;
+}
+
+bool PoseTracker::IsInconsistent(const PoseView& view, const PoseFix& fix) const {
+  const PoseEstimate& pose = fix.pose;
+  if (pose.balls_left == 0 && CountMeasured(view.left_balls) >= kBallsThatContradict) return true;
+  if (pose.balls_right == 0 && CountMeasured(view.right_balls) >= kBallsThatContradict) return true;
+  if (pose.dof <= 0 || levels_.count() < options_.poses_for_usual_level) return false;
+  const double usual = std::max(1.0, *levels_.Median());
+  return pose.chi2 / pose.dof > options_.max_level_ratio * usual;
 }
 
 Expected<PoseFix, PoseStatus> PoseTracker::FindPose(

@@ -118,6 +118,7 @@ std::vector<PoseHypothesis> MakeHypotheses(const Body& body,
                                            int max_hypotheses) {
   std::vector<PoseHypothesis> hypotheses;
   std::vector<PlacedRod> placed;
+  placed.reserve(rods.size());
   for (const RodCandidate& rod : rods) placed.push_back(PlacedBalls(body, candidates, rod));
   const bool on_a_line = BodyLine(body).has_value();
   for (std::size_t i = 0; i < rods.size(); ++i) {

@@ -20,6 +20,8 @@ std::string_view StatusWord(PoseStatus status) {
       return "ambiguous";
     case PoseStatus::kRollUndetermined:
       return "roll_undetermined";
+    case PoseStatus::kInconsistent:
+      return "inconsistent";
   }
   assert(false);
   return "";

@@ -153,7 +153,8 @@ class BadInput(unittest.TestCase):
             (self.dir / camera / "timestamps.csv").unlink()
         self.refused(2, "give --fps", result=self.track())
         result = self.track("--fps", "30")
-        self.refused(0, "1 left and 0 right frames have no partner", result=result)
+        self.refused(0, "1 left and 0 right frames have no partner", "by the numbers in",
+                     result=result)
         record = self.check_valid(self.dir / "run", FRAMES)
         self.assertEqual(record["frames"]["unpaired_left"], 1)
         self.assertEqual(record["frames"]["lost"], {"no_pair": 1})
@@ -198,6 +199,14 @@ class BadInput(unittest.TestCase):
         self.assertNotIn("libpng", result.stderr)
         statuses = [row["status"] for row in rows(self.dir / "run/poses.csv")]
         self.assertEqual(statuses, ["ok", "ok", "unreadable", "ok"])
+        self.assertIn("warning: frame 2 is lost: cam0/000002.png: ", result.stderr)
+
+    def test_all_images_corrupt(self):
+        for i in range(FRAMES):
+            (self.dir / f"cam0/{i:06}.png").write_bytes(b"not an image")
+        result = self.track()
+        self.refused(1, "frame 2 is lost: cam0/000002.png: ", "only counted", result=result)
+        self.assertNotIn("frame 3 is lost", result.stderr)
 
     def test_output_is_a_file(self):
         (self.dir / "run").write_text("mine")
@@ -217,8 +226,53 @@ class BadInput(unittest.TestCase):
         self.refused(3, "/proc/run", result=self.track("--output", "/proc/run"))
 
     def test_wrong_option(self):
-        self.assertEqual(self.track("--fps", "-3").returncode, 2)
         self.assertEqual(self.track("--bodi", "x").returncode, 2)
+
+    def test_numbers_out_of_range(self):
+        for option, value, expected in (
+                ("--fps", "-3", "a number from 0.001 to 1000000"),
+                ("--fps", "1e-10", "a number from 0.001 to 1000000"),
+                ("--fps", "0", "a number from 0.001 to 1000000"),
+                ("--fps", "inf", "a number from 0.001 to 1000000"),
+                ("--fps", "nan", "a number from 0.001 to 1000000"),
+                ("--threads", "3000", "a whole number from 0 to 256"),
+                ("--threads", "-1", "a whole number from 0 to 256"),
+                ("--threads", "1.5", "a whole number from 0 to 256"),
+                ("--start", "-1", "a whole number from 0"),
+                ("--start", "9" * 30, "a whole number from 0"),
+                ("--count", "9" * 19, "a whole number from 1"),
+                ("--count", "0", "a whole number from 1")):
+            result = self.track(option, value)
+            self.refused(2, f"{option}: found '{value}', expected {expected}", result=result)
+            self.assertLess(len(result.stderr), 200)
+        self.refused(2, f"--start: found {FRAMES}, expected 0 to {FRAMES - 1}",
+                     result=self.track("--start", FRAMES))
+        self.refused(2, f"--count: found {FRAMES}, expected 1 to {FRAMES - 1}",
+                     result=self.track("--start", 1, "--count", FRAMES))
+        self.refused(0, result=self.track("--start", 1, "--count", FRAMES - 1))
+        self.refused(2, "--threads: found '3000'",
+                     result=run("simulate", "scenario.yaml", "--output", "x", "--threads", "3000",
+                                cwd=self.base))
+
+    def test_rate_beside_timestamps(self):
+        self.refused(0, "warning: --fps is not used: cam0/timestamps.csv",
+                     result=self.track("--fps", "30"))
+
+    def test_unknown_command(self):
+        result = run("calibrate", "frame.yaml", cwd=self.dir)
+        self.refused(2, "this version has no command 'calibrate', expected one of simulate, track",
+                     result=result)
+        self.assertNotIn("did you mean", result.stderr)
+        self.refused(2, "did you mean 'track'?", result=run("trak", cwd=self.dir))
+
+    def test_folder_instead_of_file(self):
+        self.refused(2, "cam0: found a folder", result=self.track("--body", "cam0"))
+        self.refused(2, "cam0: found a folder", result=self.track("--rig", "cam0"))
+        self.refused(2, "mem: cannot be read", result=self.track("--body", "/proc/self/mem"))
+
+    def test_single_image(self):
+        self.refused(2, "expected a folder of images or a video",
+                     result=self.track("--left", "cam0/000000.png"))
 
     def test_disk_full(self):
         disk = self.dir / "disk"

@@ -39,9 +39,9 @@ TEST(PairByTime, IsSymmetric) {
     Times left, right;
     for (int i = 0; i < 40; ++i) {
       if (testing::Uniform(rng, 0, 1) < 0.8)
-        left.push_back(i * 100 + std::int64_t(testing::Uniform(rng, 0, 80)));
+        left.push_back(i * 100 + static_cast<std::int64_t>(testing::Uniform(rng, 0, 80)));
       if (testing::Uniform(rng, 0, 1) < 0.8)
-        right.push_back(i * 100 + std::int64_t(testing::Uniform(rng, 0, 80)));
+        right.push_back(i * 100 + static_cast<std::int64_t>(testing::Uniform(rng, 0, 80)));
     }
     const Times forward = PairByTime(left, right, 50), backward = PairByTime(right, left, 50);
     for (std::size_t i = 0; i < forward.size(); ++i) {

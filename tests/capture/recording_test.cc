@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/videoio.hpp>
 #include <thread>
@@ -80,6 +81,7 @@ TEST(Recording, RateGivesTimesAndLostFramesShowInTheNames) {
   EXPECT_EQ(recording->report().unpaired_right, 1);
   ASSERT_EQ(recording->report().warnings.size(), 1U);
   EXPECT_TRUE(Contains(recording->report().warnings[0], "1 right frames have no partner"));
+  EXPECT_TRUE(Contains(recording->report().warnings[0], "paired by the numbers in the names"));
 }
 
 TEST(Recording, NamesShiftedAlikePairByPosition) {
@@ -91,6 +93,74 @@ TEST(Recording, NamesShiftedAlikePairByPosition) {
   recording->Read(1, pair);
   EXPECT_EQ(pair.right.index, 2);
   EXPECT_EQ(recording->report().pairs, 3);
+  ASSERT_EQ(recording->report().warnings.size(), 1U);
+  EXPECT_TRUE(Contains(recording->report().warnings[0], "l 0 to 2, of "));
+  EXPECT_TRUE(Contains(recording->report().warnings[0], "r 1 to 3: paired in order"));
+}
+
+// Opens a recording whose right camera is in order and whose left one has these names and rows.
+std::vector<std::string> WarningsOf(const std::vector<int>& names, int rows) {
+  TemporaryFolder folder;
+  WriteImages(folder, "l", names);
+  WriteImages(folder, "r", {0, 1, 2, 3});
+  std::string csv = "frame,timestamp_ns\n";
+  for (int i = 0; i < rows; ++i) csv += std::to_string(i) + "," + std::to_string(100 * i) + "\n";
+  folder.Write("l/timestamps.csv", csv);
+  folder.Write("r/timestamps.csv", "frame,timestamp_ns\n0,0\n1,100\n2,200\n3,300\n");
+  return Open(folder)->report().warnings;
+}
+
+TEST(Recording, NamesShiftedAgainstTheRowsAreTold) {
+  EXPECT_TRUE(WarningsOf({0, 1, 2, 3}, 4).empty());
+  EXPECT_TRUE(WarningsOf({10, 11, 12, 13}, 4).empty());  // no number in common: only one reading
+  const auto in_order = WarningsOf({1, 2, 3, 4}, 4);
+  ASSERT_EQ(in_order.size(), 1U);
+  EXPECT_TRUE(Contains(in_order[0], "the rows are frames 0 to 3, the names are numbered 1 to 4"));
+  EXPECT_TRUE(Contains(in_order[0], "taken in order"));
+  const auto by_number = WarningsOf({1, 2, 4}, 4);
+  ASSERT_EQ(by_number.size(), 3U);
+  EXPECT_TRUE(Contains(by_number[2], "names and rows may be shifted"));
+  EXPECT_EQ(WarningsOf({0, 1, 2}, 4).size(), 1U);  // the last image is lost: nothing is shifted
+}
+
+TEST(Recording, NumbersThatMeetNoRow) {
+  TemporaryFolder folder;
+  WriteImages(folder, "l", {10, 11, 13});
+  WriteImages(folder, "r", {0, 1, 2});
+  for (const char* camera : {"l", "r"}) {
+    folder.Write(camera + std::string("/timestamps.csv"),
+                 "frame,timestamp_ns\n0,0\n1,100\n2,200\n");
+  }
+  const std::string error = ErrorOf(folder);
+  EXPECT_TRUE(Contains(error, "frames 0 to 2, the names are numbered 10 to 13")) << error;
+  EXPECT_FALSE(Contains(error, "do not number them")) << error;
+}
+
+TEST(Recording, RateOutOfRangeOrWithoutUse) {
+  TemporaryFolder folder;
+  WriteImages(folder, "l", {0, 1});
+  WriteImages(folder, "r", {0, 1});
+  for (const double fps : {1e-10, -3.0, 2e6, HUGE_VAL, std::nan("")}) {
+    EXPECT_TRUE(Contains(ErrorOf(folder, fps), "expected 0.001 to 1e+06 frames a second")) << fps;
+  }
+  EXPECT_EQ(ErrorOf(folder, kLowestFps), "no error");
+  EXPECT_EQ(ErrorOf(folder, kHighestFps), "no error");
+  folder.Write("l/timestamps.csv", "frame,timestamp_ns\n0,0\n1,100\n");
+  folder.Write("r/timestamps.csv", "frame,timestamp_ns\n0,0\n1,100\n");
+  EXPECT_TRUE(Open(folder)->report().warnings.empty());
+  EXPECT_TRUE(Contains(Open(folder, 10)->report().warnings.at(0), "--fps is not used"));
+}
+
+TEST(Recording, SingleImageIsNoRecording) {
+  TemporaryFolder folder;
+  WriteImages(folder, "l", {0, 1});
+  WriteImages(folder, "r", {0, 1});
+  try {
+    OpenRecording(folder.path() / "l/i0.png", folder.path() / "r");
+    FAIL() << "expected an error";
+  } catch (const UserError& error) {
+    EXPECT_TRUE(Contains(error.what(), "l/i0.png: found a single image, expected a folder"));
+  }
 }
 
 TEST(Recording, UnequalCountsWithoutNumbers) {

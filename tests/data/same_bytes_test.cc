@@ -45,7 +45,7 @@ FileBytes TrackDemo(int threads) {
 
 TEST(MeasureRecording, WritesTheSameBytesOnAnyNumberOfThreads) {
   const FileBytes one = TrackDemo(1);
-  for (const auto& [name, bytes] : one) EXPECT_GT(bytes.size(), 1000u) << name;
+  for (const auto& [name, bytes] : one) EXPECT_GT(bytes.size(), 1000U) << name;
   for (const int threads : {2, 5}) {
     for (const auto& [name, bytes] : TrackDemo(threads)) {
       EXPECT_TRUE(bytes == one.at(name)) << name << " with " << threads << " threads";

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdint>
 #include <cstdlib>
 
 #include "stereomotion/detection/detect_balls.h"
@@ -10,9 +11,10 @@
 #define STEREOMOTION_CANNOT_COUNT 1
 #else
 namespace {
-std::atomic<long> allocations{0};
+std::atomic<std::int64_t> allocations{0};
 }  // namespace
 
+// glibc's own name. NOLINTNEXTLINE(bugprone-reserved-identifier)
 extern "C" void* __libc_malloc(std::size_t size);
 extern "C" void* malloc(std::size_t size) {
   ++allocations;
@@ -40,7 +42,7 @@ TEST(BallDetector, AllocatesNothingOnceWarm) {
   std::vector<BallObservation> found;
   detector.Detect(image.View(), found);
   detector.Detect(image.View(), found);
-  const long before = allocations;
+  const std::int64_t before = allocations;
   for (int i = 0; i < 5; ++i) detector.Detect(image.View(), found);
   EXPECT_EQ(allocations - before, 0);
   EXPECT_EQ(found.size(), balls.size());

@@ -56,6 +56,14 @@ TEST(BodyFile, WrongFormat) {
   EXPECT_TRUE(Has(ErrorOf(""), "found nothing, expected a map with the key 'format'"));
 }
 
+TEST(BodyFile, FolderOrUnreadableFile) {
+  const auto error = [](const char* file) { return Error([&] { ReadBody(file); }); };
+  EXPECT_TRUE(Has(error("/tmp"), "/tmp: found a folder, expected a YAML file"));
+  EXPECT_TRUE(Has(error("/nowhere/body.yaml"), "cannot be read, expected a YAML file"));
+  // Opens, but its first byte cannot be read, not even by root.
+  EXPECT_TRUE(Has(error("/proc/self/mem"), "cannot be read to its end")) << error("/proc/self/mem");
+}
+
 TEST(BodyFile, NotYaml) { EXPECT_TRUE(Has(ErrorOf("a: [1, 2\nb: }"), "is not valid YAML")); }
 
 TEST(BodyFile, MissingFile) {

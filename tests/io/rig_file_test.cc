@@ -271,6 +271,11 @@ TEST(RigFile, AniposeErrors) {
   EXPECT_TRUE(Has(error("[cam_0]", "[cam_0"), "c.toml:1: is not valid TOML"));
 }
 
+TEST(RigFile, FolderOrUnreadableFile) {
+  EXPECT_TRUE(Has(Error([] { ReadRig("/tmp"); }), "/tmp: found a folder, expected a rig file"));
+  EXPECT_TRUE(Has(Error([] { ReadRig("/proc/self/mem"); }), "/proc/self/mem: cannot be read"));
+}
+
 TEST(RigFile, MissingFile) {
   EXPECT_TRUE(
       Has(Error([] { ReadRig("/nowhere/rig.yaml"); }), "/nowhere/rig.yaml: cannot be read"));

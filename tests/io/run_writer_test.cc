@@ -12,9 +12,9 @@
 #include <sstream>
 
 #include "io_test_support.h"
-#include "src/io/suggest.h"
 #include "stereomotion/io/csv_rows.h"
 #include "stereomotion/io/output_error.h"
+#include "stereomotion/io/suggest.h"
 #include "stereomotion/pose/status_words.h"
 
 namespace stereomotion {

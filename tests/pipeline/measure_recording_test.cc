@@ -98,7 +98,7 @@ TEST_F(MeasureRecordingTest, MeasuresEveryPair) {
     const Rigid3 truth = StateAt(scenario.motion, time.true_s).world_from_body;
     EXPECT_EQ(measurement.frame, i);
     EXPECT_EQ(measurement.timestamp_ns, time.timestamp_ns);
-    EXPECT_EQ(measurement.balls.size(), 10u);
+    EXPECT_EQ(measurement.balls.size(), 10U);
     ASSERT_TRUE(measurement.pose) << i;
     EXPECT_FALSE(measurement.pose->calibration_u);
     const Vector6d error = PerturbationBetween(truth, measurement.pose->world_from_body);
@@ -138,7 +138,7 @@ TEST_F(MeasureRecordingTest, SourceThatThrows) {
     EXPECT_THROW(Measure(WatchedSource(50, throws)), std::runtime_error);  // learning the noise
     GiveNoise();
     EXPECT_THROW(Measure(WatchedSource(50, throws)), std::runtime_error);
-    EXPECT_LE(measurements_.size(), 20u);
+    EXPECT_LE(measurements_.size(), 20U);
     for (RigCamera& camera : setup_.rig.cameras) camera.noise.reset();
   }
 }
@@ -153,7 +153,7 @@ TEST_F(MeasureRecordingTest, StopFlagEndsAfterThePairInHand) {
   const RunSummary summary =
       Measure(WatchedSource(1000, [](std::int64_t, const FramePair&) {}), &stop);
   EXPECT_EQ(summary.pairs_read, 3);
-  EXPECT_EQ(measurements_.size(), 3u);
+  EXPECT_EQ(measurements_.size(), 3U);
   EXPECT_TRUE(summary.interrupted);
 }
 
@@ -184,7 +184,7 @@ TEST_F(MeasureRecordingTest, BadFramesSayWhyAndTheRunGoesOn) {
   }
   for (const std::size_t bad : {1, 2, 3}) {
     EXPECT_FALSE(measurements_[bad].pose) << bad;
-    EXPECT_EQ(measurements_[bad].balls.size(), 10u);
+    EXPECT_EQ(measurements_[bad].balls.size(), 10U);
     EXPECT_EQ(measurements_[bad].balls.front().status, BallStatus::kNoPose);
   }
   EXPECT_EQ(summary.lost_by_reason,

@@ -63,6 +63,44 @@ TEST_F(PoseTrackerTest, FollowsWithHiddenAndFalseBalls) {
   RecordProperty("worst_mm", std::to_string(worst_mm));
 }
 
+TEST_F(PoseTrackerTest, WithholdsPosesWhileACameraIsBumped) {
+  PoseTracker tracker = MakeTracker();
+  for (int frame = 0; frame < 30; ++frame) {
+    ObservedPair pair = See(PoseAt(0.01 * frame));
+    const bool bumped = frame >= 10 && frame < 20;
+    for (BallObservation& ball : pair.right) ball.center_px.x() += bumped ? 0.8 : 0.0;
+    const auto fix = tracker.Track(frame * kFrameNs, pair.left, pair.right);
+    ASSERT_EQ(fix.has_value(), !bumped) << frame;
+    if (bumped) {
+      EXPECT_EQ(fix.error(), PoseStatus::kInconsistent);
+    }
+  }
+}
+
+TEST_F(PoseTrackerTest, OneCameraAloneIsNotBelievedAgainstTheOther) {
+  PoseTracker tracker = MakeTracker();
+  for (int frame = 0; frame < 10; ++frame) {
+    ObservedPair pair = See(PoseAt(0.01 * frame));
+    ASSERT_TRUE(tracker.Track(frame * kFrameNs, pair.left, pair.right));
+  }
+  ObservedPair shifted = See(PoseAt(0.1));
+  for (BallObservation& ball : shifted.right) ball.center_px.x() += 25;
+  EXPECT_FALSE(tracker.Track(10 * kFrameNs, shifted.left, shifted.right));
+  // With nothing to contradict it, the left camera alone carries the pose on.
+  ObservedPair alone = See(PoseAt(0.11));
+  const auto fix = tracker.Track(11 * kFrameNs, alone.left, {});
+  ASSERT_TRUE(fix);
+  EXPECT_EQ(fix->pose.balls_right, 0);
+}
+
+TEST(LevelHistogram, MedianToTwoPercent) {
+  LevelHistogram levels;
+  EXPECT_FALSE(levels.Median());
+  for (int i = 1; i <= 1001; ++i) levels.Add(0.01 * i);
+  EXPECT_NEAR(*levels.Median(), 5.01, 0.1);
+  EXPECT_EQ(levels.count(), 1001);
+}
+
 TEST_F(PoseTrackerTest, AcquiresAgainAfterALoss) {
   PoseTracker tracker = MakeTracker();
   for (int frame = 0; frame < 10; ++frame) {

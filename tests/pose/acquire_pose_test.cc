@@ -70,7 +70,7 @@ TEST_F(AcquirePoseTest, ExactObservations) {
   const auto fix = Acquire(See(truth_));
   ASSERT_TRUE(fix);
   EXPECT_LT(WorstBallMm(fix->pose, truth_), 1e-5);
-  EXPECT_EQ(fix->used.size(), 20u);
+  EXPECT_EQ(fix->used.size(), 20U);
 }
 
 TEST_F(AcquirePoseTest, HiddenAndFalseBallsNeverGiveAWrongPose) {

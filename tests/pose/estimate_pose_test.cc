@@ -48,7 +48,7 @@ class EstimatePoseTest : public ::testing::Test {
 TEST_F(EstimatePoseTest, ExactObservations) {
   observe_.noise_scale = 0;
   const ObservedPair pair = See(truth_);
-  ASSERT_EQ(pair.truth.size(), 20u);
+  ASSERT_EQ(pair.truth.size(), 20U);
   const auto pose = Estimate(pair, Near(truth_));
   ASSERT_TRUE(pose);
   const Vector6d error = PerturbationBetween(truth_, pose->world_from_body);
@@ -136,7 +136,7 @@ TEST_F(EstimatePoseTest, FarBodyOriginCostsNothing) {
 TEST_F(EstimatePoseTest, TooFewBalls) {
   ObservedPair pair = See(truth_);
   Filter(pair, [](const auto& a) { return a.id.ball == 0 || (a.id.rod == 0 && a.id.ball == 4); });
-  ASSERT_EQ(pair.truth.size(), 6u);
+  ASSERT_EQ(pair.truth.size(), 6U);
   const auto pose = Estimate(pair, truth_);
   ASSERT_FALSE(pose);
   EXPECT_EQ(pose.error(), PoseStatus::kTooFewBalls);
@@ -184,7 +184,7 @@ TEST_F(EstimatePoseTest, OnlyMeasuredBallsCount) {
   std::vector<BallAssignment> used;
   const auto pose = Estimate(pair, Near(truth_), &used);
   ASSERT_TRUE(clean && pose);
-  EXPECT_EQ(used.size(), 18u);
+  EXPECT_EQ(used.size(), 18U);
   EXPECT_EQ(pose->balls_left + pose->balls_right, 18);
 }
 
@@ -252,7 +252,7 @@ TEST_F(EstimatePoseTest, GrossErrorIsDropped) {
       return a.id == victim.id && a.camera == victim.camera;
     };
     EXPECT_TRUE(std::none_of(used.begin(), used.end(), is_victim));
-    EXPECT_GE(used.size(), 18u);
+    EXPECT_GE(used.size(), 18U);
   }
 }
 
@@ -289,7 +289,7 @@ TEST_F(EstimatePoseTest, WrongRigIsNoReasonToDropBalls) {
   const auto pose = Estimate(pair, Near(truth_), &used);
   ASSERT_TRUE(pose);
   EXPECT_GT(pose->chi2, 5 * pose->dof);
-  EXPECT_GE(used.size(), 18u);
+  EXPECT_GE(used.size(), 18U);
 }
 
 }  // namespace

@@ -164,7 +164,8 @@ TEST(RenderBalls, SameSeedSameBytesOtherSeedOtherBytes) {
   bool same = true, differs = false;
   for (int v = 0; v < 64; ++v) {
     same = same && std::memcmp(first.Row<std::uint8_t>(v), second.Row<std::uint8_t>(v), 64) == 0;
-    differs = differs || std::memcmp(first.Row<std::uint8_t>(v), other.Row<std::uint8_t>(v), 64);
+    differs =
+        differs || std::memcmp(first.Row<std::uint8_t>(v), other.Row<std::uint8_t>(v), 64) != 0;
   }
   EXPECT_TRUE(same);
   EXPECT_TRUE(differs);

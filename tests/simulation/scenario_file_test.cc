@@ -80,13 +80,13 @@ TEST_F(ReadScenarioTest, ReadsEveryKey) {
   EXPECT_EQ(scenario.sensor.full_well_e, 9000);
   EXPECT_EQ(scenario.sensor.read_e, 4);
   EXPECT_EQ(scenario.sensor.exposure_s, 0.002);
-  ASSERT_EQ(scenario.false_balls.size(), 1u);
+  ASSERT_EQ(scenario.false_balls.size(), 1U);
   EXPECT_EQ(scenario.false_balls[0].diameter_mm, 5);
   EXPECT_EQ(scenario.frames, 4);
   EXPECT_EQ(scenario.fps, 50);
   EXPECT_EQ(scenario.lag_s, -0.003);
   EXPECT_TRUE(scenario.lag_reported);
-  EXPECT_EQ(scenario.seed, 9u);
+  EXPECT_EQ(scenario.seed, 9U);
   EXPECT_EQ(scenario.name, "all");
 }
 
@@ -101,8 +101,8 @@ TEST_F(ReadScenarioTest, LeftOutKeysKeepTheirDefaults) {
   EXPECT_EQ(scenario.name, "scenario");
   EXPECT_EQ(scenario.light.ball_level, SceneLight{}.ball_level);
   EXPECT_EQ(scenario.sensor.bits, 8);
-  EXPECT_EQ(scenario.rig.cameras.size(), 2u);
-  EXPECT_EQ(scenario.body.rods.size(), 2u);
+  EXPECT_EQ(scenario.rig.cameras.size(), 2U);
+  EXPECT_EQ(scenario.body.rods.size(), 2U);
 }
 
 TEST_F(ReadScenarioTest, CommentedExampleIsValid) {

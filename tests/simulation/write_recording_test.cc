@@ -53,7 +53,7 @@ TEST_F(WriteRecordingTest, SameBytesFromAnyNumberOfThreads) {
   EXPECT_EQ(WriteRecording(MakeTestScenario(), folder_ / "three", options), 3);
   EXPECT_EQ(told, 3);
   const auto files = FilesUnder(folder_ / "one");
-  EXPECT_EQ(files.size(), 2u * 4 + 3);
+  EXPECT_EQ(files.size(), 2U * 4 + 3);
   EXPECT_TRUE(files == FilesUnder(folder_ / "three"));
 }
 

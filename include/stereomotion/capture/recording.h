@@ -10,6 +10,10 @@
 
 namespace stereomotion {
 
+/// The frame rates that are believed: beyond them times overflow or repeat.
+constexpr double kLowestFps = 0.001;
+constexpr double kHighestFps = 1e6;
+
 struct RecordingOptions {
   double fps = 0;            ///< frames a second where the recording carries no times; 0: not given
   bool hash_images = false;  ///< digest what is read, for `Recording::InputDigest`
@@ -51,8 +55,8 @@ class Recording : public PairSource {
 /// in either camera `fps` gives the time, and frames are paired by the number in their names where
 /// the numbers tell which frames are missing, else by position. Nothing but names and times is read
 /// here; an image that proves unreadable later is that frame's problem, not the recording's.
-/// Throws `UserError` where a folder is missing or empty, a timestamps.csv is invalid or times
-/// lack.
+/// Throws `UserError` where a folder is missing or empty, a timestamps.csv is invalid, times
+/// lack, or `fps` is beyond `kLowestFps` … `kHighestFps`.
 std::unique_ptr<Recording> OpenRecording(const std::filesystem::path& left,
                                          const std::filesystem::path& right,
                                          const RecordingOptions& options = {});

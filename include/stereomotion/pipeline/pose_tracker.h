@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "stereomotion/pipeline/level_histogram.h"
 #include "stereomotion/pose/acquire_pose.h"
 
 namespace stereomotion {
@@ -17,6 +18,10 @@ struct TrackerOptions {
   /// Share of the outlines predicted inside the images that a tracked pose must explain where
   /// acquisition finds nothing; the rest may be occluded.
   double min_explained = 0.4;
+  /// A pose whose χ²/dof is this many times the usual one of the run (and of pure noise, 1) is
+  /// withheld: its residuals are ten times larger, so a camera was moved or the cameras lost step.
+  double max_level_ratio = 100;
+  int poses_for_usual_level = 3;  ///< so many poses tell what is usual
 };
 
 /// Follows a body from pair to pair: predicts by constant twist, searches in a window as wide as
@@ -26,7 +31,9 @@ class PoseTracker {
  public:
   PoseTracker(RigCamera left, RigCamera right, Body body, TrackerOptions options = {});
 
-  /// Finds the pose of the next pair; times must not decrease.
+  /// Finds the pose of the next pair; times must not decrease. Besides the reasons of
+  /// `AcquirePose`: kInconsistent, where the residuals are far larger than in the poses before, or
+  /// where one camera's well measured balls all contradict the pose.
   Expected<PoseFix, PoseStatus> Track(std::int64_t timestamp_ns,
                                       const std::vector<BallObservation>& left_balls,
                                       const std::vector<BallObservation>& right_balls);
@@ -49,12 +56,15 @@ class PoseTracker {
       const PoseView& view, const std::optional<PoseFix>& tracked, bool identity_safe,
       const Expected<PoseFix, PoseStatus>& acquired) const;
 
+  [[nodiscard]] bool IsInconsistent(const PoseView& view, const PoseFix& fix) const;
+
   RigCamera left_;
   RigCamera right_;
   Body body_;
   TrackerOptions options_;
   std::optional<TimedPose> last_;
   std::optional<TimedPose> before_last_;
+  LevelHistogram levels_;  ///< χ²/dof of the poses so far
 };
 
 }  // namespace stereomotion

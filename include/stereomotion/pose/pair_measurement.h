@@ -18,7 +18,7 @@ enum class BallStatus {
   kLeftOnly,
   kRightOnly,
   kNotSeen,
-  kRejected,  ///< both cameras, but the rays miss each other or the pose beyond the gate
+  kRejected,  ///< both cameras, but the two rays give no point (see `Triangulate`)
   kNoPose,    ///< the frame has no pose, so nothing tells which blob is which ball
 };
 

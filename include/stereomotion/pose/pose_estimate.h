@@ -16,6 +16,7 @@ enum class PoseStatus {
   kLost,              ///< balls were seen, but no arrangement of them fits the body
   kAmbiguous,         ///< two different poses explain the images about equally well
   kRollUndetermined,  ///< only one rod of several was seen: roll about it is open
+  kInconsistent,      ///< the cameras contradict each other far more than in the frames before
 };
 
 /// Holds the pose of a body in one frame pair.
