@@ -1,7 +1,6 @@
 #include "stereomotion/pipeline/measure.h"
 
 #include <algorithm>
-#include <chrono>
 #include <stdexcept>
 #include <thread>
 
@@ -10,17 +9,12 @@
 #include "learn_noise.h"
 #include "ordered_pairs.h"
 #include "run_totals.h"
+#include "stopwatch.h"
 
 namespace stereomotion {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::int64_t kMostThreads = 256;
-
-double MillisecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 void CheckSetup(const PairSource& source, const MeasureSetup& setup,
                 const MeasureOptions& options) {
@@ -77,13 +71,14 @@ RunSummary MeasureRecording(const PairSource& source, const MeasureSetup& setup,
                             const MeasureOptions& options, const MeasurementSink& sink,
                             const std::atomic<bool>* stop) {
   CheckSetup(source, setup, options);
-  const auto start = Clock::now();
+  Stopwatch total;
+  Stopwatch stage;
   const std::int64_t rest = source.size() - options.first;
   const std::int64_t end =
       options.first + (options.count < 0 ? rest : std::min(rest, options.count));
   RunSummary summary;
   LearnNoise(source, setup, options, end, summary);
-  summary.stage_ms["learn_noise"] = MillisecondsSince(start);
+  summary.stage_ms["learn_noise"] = stage.LapMs();
 
   OrderedPairs pairs(source, MakeSettings(options, summary, end));
   PoseTracker tracker(setup.rig.cameras[static_cast<std::size_t>(setup.left_camera)],
@@ -92,19 +87,19 @@ RunSummary MeasureRecording(const PairSource& source, const MeasureSetup& setup,
   RunTotals totals(summary);
   PairMeasurement measurement;
   while (const DetectedPair* pair = pairs.Next()) {
-    const auto pose_start = Clock::now();
+    stage.LapMs();
     const auto fix = FindPose(setup, *pair, tracker, measurement.detail);
     ComposeMeasurement(setup, *pair, fix, measurement);
-    summary.stage_ms["pose"] += MillisecondsSince(pose_start);
+    summary.stage_ms["pose"] += stage.LapMs();
     totals.Count(*pair, measurement);
-    const auto write_start = Clock::now();
+    stage.LapMs();
     const bool go_on = sink(measurement);
-    summary.stage_ms["write"] += MillisecondsSince(write_start);
+    summary.stage_ms["write"] += stage.LapMs();
     summary.interrupted = stop != nullptr && stop->load();
     if (!go_on || summary.interrupted) break;
   }
   totals.Finish(setup, options);
-  summary.elapsed_ms = MillisecondsSince(start);
+  summary.elapsed_ms = total.LapMs();
   return summary;
 }
 

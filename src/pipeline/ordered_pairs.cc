@@ -1,27 +1,22 @@
 #include "ordered_pairs.h"
 
 #include <algorithm>
-#include <chrono>
+
+#include "stopwatch.h"
 
 namespace stereomotion {
 namespace {
 
-double MillisecondsSince(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
-}
-
 void ReadAndDetect(const PairSource& source, std::int64_t position, BallDetector& left,
                    BallDetector& right, DetectedPair& pair) {
-  const auto start = std::chrono::steady_clock::now();
+  Stopwatch watch;
   source.Read(position, pair.frames);
-  pair.read_ms = MillisecondsSince(start);
-  const auto read = std::chrono::steady_clock::now();
+  pair.read_ms = watch.LapMs();
   pair.left.clear();
   pair.right.clear();
   if (!pair.frames.left.image.empty()) left.Detect(pair.frames.left.image.View(), pair.left);
   if (!pair.frames.right.image.empty()) right.Detect(pair.frames.right.image.View(), pair.right);
-  pair.detect_ms = MillisecondsSince(read);
+  pair.detect_ms = watch.LapMs();
 }
 
 }  // namespace
