@@ -52,12 +52,6 @@ void CheckRange(const TrackOptions& options, std::int64_t frames) {
     throw UserError(fmt::format("--start: found {}, expected 0 to {}: {} has {} frames",
                                 options.start, frames - 1, options.left, frames));
   }
-  const std::int64_t rest = frames - options.start;
-  if (options.count > rest) {
-    throw UserError(
-        fmt::format("--count: found {}, expected 1 to {}: {} has {} frames from --start {} on",
-                    options.count, rest, options.left, rest, options.start));
-  }
 }
 
 void CheckFirstImages(const TrackInputs& inputs, const ResolvedCameras& cameras,

@@ -9,8 +9,6 @@ namespace {
 
 /// Failed pairs kept for the diagnosis, when no pair gives a pose.
 constexpr std::size_t kPairsToDiagnose = 5;
-/// Unreadable images that are named; the rest is counted.
-constexpr std::size_t kReasonsToName = 3;
 /// Residuals this many times above the noise's (χ²/dof) are worth a word: rig, body or time is off.
 constexpr double kRemarkableChi2Dof = 4;
 
@@ -31,9 +29,7 @@ void RunTotals::Count(const DetectedPair& pair, const PairMeasurement& measureme
 void RunTotals::CountLoss(const DetectedPair& pair, const PairMeasurement& measurement) {
   ++summary_.lost_by_reason[std::string(StatusWord(measurement.status))];
   const PoseStatus status = measurement.status;
-  if (status == PoseStatus::kUnreadable && unreadable_.size() < kReasonsToName) {
-    unreadable_.push_back(measurement.detail);
-  }
+  if (status == PoseStatus::kUnreadable && unreadable_.empty()) unreadable_ = measurement.detail;
   if (status == PoseStatus::kInconsistent && first_inconsistent_frame_ < 0) {
     first_inconsistent_frame_ = measurement.frame;
   }
@@ -55,11 +51,9 @@ void RunTotals::Finish(const MeasureSetup& setup, const MeasureOptions& options)
 
 void RunTotals::WarnOfUnreadable() {
   if (unreadable_.empty()) return;
-  std::string text = std::to_string(summary_.lost_by_reason.at("unreadable")) +
-                     " frame pairs have an image that cannot be used:";
-  for (const std::string& reason : unreadable_) text += " " + reason + ";";
-  text.back() = '.';
-  summary_.warnings.push_back(text);
+  summary_.warnings.push_back(
+      std::to_string(summary_.lost_by_reason.at("unreadable")) +
+      " frame pairs have an image that cannot be used, the first: " + unreadable_);
 }
 
 void RunTotals::WarnOfInconsistent() {

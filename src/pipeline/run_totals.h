@@ -28,8 +28,8 @@ class RunTotals {
 
   RunSummary& summary_;
   LevelHistogram levels_;
-  std::vector<FailedPair> failed_;       ///< the first ones whose images could be read
-  std::vector<std::string> unreadable_;  ///< the first reasons
+  std::vector<FailedPair> failed_;  ///< the first ones whose images could be read
+  std::string unreadable_;          ///< the first reason
   std::int64_t first_inconsistent_frame_ = -1;
 };
 

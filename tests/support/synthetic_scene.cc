@@ -37,7 +37,7 @@ Rod MakeRod(const std::string& name, const Eigen::Vector3d& start_mm,
   rod.name = name;
   rod.ball_diameter_mm = 14;
   for (const double place_mm : places_mm) {
-    rod.balls_in_body_mm.push_back(start_mm + place_mm * direction.normalized());
+    rod.balls_in_body_mm.emplace_back(start_mm + place_mm * direction.normalized());
   }
   return rod;
 }
@@ -98,7 +98,7 @@ void MergeOverlaps(std::vector<Seen>& seen) {
         continue;
       }
       a.ball.status = b.ball.status = BlobStatus::kPartly;
-      merged.push_back({&a, (b.ball.center_px - a.ball.center_px) / 3});
+      merged.emplace_back(&a, (b.ball.center_px - a.ball.center_px) / 3);
     }
   }
   for (const auto& [one, bias_px] : merged) one->ball.center_px += bias_px;
