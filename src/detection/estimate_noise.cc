@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "background_map.h"
+#include "background_variance.h"
 #include "ball_fitter.h"
 #include "classify_blob.h"
-#include "rounded_normal.h"
 #include "segment_blobs.h"
 #include "variance_line.h"
 
@@ -21,15 +21,6 @@ constexpr double kLargestScatterRatio = 2;
 /// A residual beyond this many σ shows a rod or a scratch (once the noise is known roughly).
 constexpr double kLargestResidual_sigma = 4.5;
 constexpr int kPasses = 4;
-/// Independent differences of neighbours in a cell's stretch of 32 pixels (von Neumann 1941: 2/3 of
-/// 31).
-constexpr int kPixelsPerCell = 20;
-/// Closer to grey value 0 than this too much of the noise is cut off to be made good.
-constexpr double kDarkest_sigma = 1.0;
-/// Below this variance [DN²] rounding does not simply add 1/12.
-constexpr double kCoarse_dn2 = 0.6;
-/// So far above 0 nothing of the noise is cut off.
-constexpr double kUnclipped_sigma = 4;
 constexpr int kFewestPixels = 200;
 
 /// Sums the squared residuals inside one ball.
@@ -64,62 +55,6 @@ VarianceLine SumOrdinary(const std::vector<VarianceLine>& balls) {
     if (ball.MeanScatter() <= kLargestScatterRatio * *middle) sum.Add(ball);
   }
   return sum;
-}
-
-/// Holds what is left of a normal distribution when its negative part is recorded as 0.
-struct ClippedNormal {
-  double mean_sigma;      ///< mean / σ after clipping
-  double variance_ratio;  ///< variance / σ² after clipping
-};
-
-/// Clips a normal distribution whose mean is `alpha` σ at zero (Greene, Econometric Analysis, ch.
-/// 19).
-ClippedNormal ClipAtZero(double alpha) {
-  const double above = 0.5 * std::erfc(-alpha / std::sqrt(2.0));
-  const double density = std::exp(-0.5 * alpha * alpha) / std::sqrt(2 * 3.14159265358979323846);
-  const double mean = alpha * above + density;
-  return {mean, (alpha * alpha + 1) * above + alpha * density - mean * mean};
-}
-
-/// Adds a cell whose noise is so small that the place of its level between two grey values decides
-/// how much rounding adds (less than nothing at a whole one). The line is linearised about the
-/// noise so far: a cell that rounding has made blind to the noise weighs nothing.
-void AddCoarselyRounded(double level_dn, double variance_dn2, double expected_dn2,
-                        VarianceLine& sums) {
-  constexpr double kSheppard_dn2 = 1.0 / 12.0;
-  constexpr double kSmallest_dn2 = 1e-3;
-  constexpr double kBlind = 0.2;
-  const double light_dn2 = std::max(expected_dn2 - kSheppard_dn2, kSmallest_dn2);
-  double mean_dn = level_dn;
-  for (int k = 0; k < 3; ++k) mean_dn += level_dn - RoundNormal(mean_dn, light_dn2).mean;
-  const RoundedNormal rounded = RoundNormal(mean_dn, light_dn2);
-  const double step_dn2 = 0.05 * light_dn2;
-  const double slope = (RoundNormal(mean_dn, light_dn2 + step_dn2).variance -
-                        RoundNormal(mean_dn, light_dn2 - step_dn2).variance) /
-                       (2 * step_dn2);
-  if (slope < kBlind) return;
-  sums.Add(mean_dn, light_dn2 + kSheppard_dn2 + (variance_dn2 - rounded.variance) / slope,
-           std::sqrt(rounded.squares_variance / 2) / slope, kPixelsPerCell);
-}
-
-/// Adds the background's cells, those left out that show more than noise (edges, balls, rods).
-void AddBackground(const BackgroundMap& map, const SensorNoise& noise, VarianceLine& sums) {
-  for (std::size_t i = 0; i < map.level_dn.size(); ++i) {
-    const double expected = noise.VarianceDn2(map.raw_level_dn[i]);
-    const double sigma = std::sqrt(expected);
-    // In near darkness the noise's negative half is cut off at grey value 0.
-    double alpha = map.raw_level_dn[i] / sigma;
-    for (int k = 0; k < 3; ++k) alpha += map.raw_level_dn[i] / sigma - ClipAtZero(alpha).mean_sigma;
-    if (alpha < kDarkest_sigma) continue;
-    const double level = alpha * sigma;
-    const double variance = map.raw_variance_dn2[i] / ClipAtZero(alpha).variance_ratio;
-    if (variance > kLargestScatterRatio * expected) continue;
-    if (expected < kCoarse_dn2 && alpha > kUnclipped_sigma) {
-      AddCoarselyRounded(level, variance, expected, sums);
-    } else {
-      sums.Add(level, variance, expected, kPixelsPerCell);
-    }
-  }
 }
 
 double SaturationOf(const std::vector<ImageView>& images) {
@@ -166,7 +101,7 @@ std::optional<SensorNoise> RefineNoise(const std::vector<ImageView>& images,
   VarianceLine outside;
   for (const ImageView& image : images) {
     EstimateBackground(image, noise, options.max_diameter_px, background);
-    AddBackground(background, noise, outside);
+    AddBackgroundVariance(background, noise, outside);
     segmenter.Segment(image, background, options.threshold_sigma);
     ChooseCandidates(image, segmenter.blobs(), options, candidates);
     for (const Blob* blob : candidates) {
