@@ -8,8 +8,8 @@ FNR == 1 {
     print "Pose of the body in the world; rotation as axis times angle. sigma: the expected"
     print "3D error (1 sigma); off: the real one, against the truth of the recording."
     print ""
-    print "             position [mm]                   rotation [deg]           off"
-    print "frame      x       y       z  sigma       x       y       z  sigma     mm    deg"
+    print "            position [mm]                   rotation [deg]           off"
+    print "frame     x       y       z  sigma       x       y       z  sigma     mm    deg"
   }
   next
 }
@@ -22,11 +22,11 @@ file == 1 {
 {
   ++frames
   status = $column["status"]
-  if (status != "ok") { printf "%5d  %s\n", $1, status; next }
+  if (status != "ok") { printf "%4d  %s\n", $1, status; next }
   ++poses
   x = $column["tx_mm"]; y = $column["ty_mm"]; z = $column["tz_mm"]
   degrees = degrees_per_vector_part($column["qw"], length_of_vector_part())
-  printf "%5d%8.3f%8.3f%8.3f%7.4f%8.3f%8.3f%8.3f%7.4f", $1, x, y, z, root_of_trace(3, 5),
+  printf "%4d%8.3f%8.3f%8.3f%7.4f%8.3f%8.3f%8.3f%7.4f", $1, x, y, z, root_of_trace(3, 5),
          degrees * $column["qx"], degrees * $column["qy"], degrees * $column["qz"],
          root_of_trace(0, 2) * degrees_per_rad
   if ($1 in true_x) {

@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,8 @@ struct Condition {
   std::int64_t frames;
   double ball_level, background_level, full_well_e, read_e;
 };
+
+void PrintTo(const Condition& condition, std::ostream* out) { *out << condition.name; }
 
 /// A body of two rods, 9 px balls in images of 384 × 320 px, all of them visible and apart.
 Scenario MakeScenario(const Condition& condition) {

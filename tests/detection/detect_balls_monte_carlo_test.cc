@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <ostream>
+#include <string>
 
 #include "stereomotion/detection/detect_balls.h"
 #include "stereomotion/simulation/render.h"
@@ -14,11 +16,14 @@ using testing::MakeTestRng;
 using testing::Uniform;
 
 struct Condition {
+  const char* name;
   double diameter_px;
   double amplitude_dn;
   double background_dn;
   SensorNoise noise;
 };
+
+void PrintTo(const Condition& condition, std::ostream* out) { *out << condition.name; }
 
 class DetectBallsMonteCarlo : public ::testing::TestWithParam<Condition> {};
 
@@ -77,9 +82,10 @@ TEST_P(DetectBallsMonteCarlo, CentresAreUnbiasedAndAsSpreadAsStated) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Conditions, DetectBallsMonteCarlo,
-                         ::testing::Values(Condition{9.2, 150, 15, {58.8, 8, 0, 255}},
-                                           Condition{19.5, 150, 15, {58.8, 8, 0, 255}},
-                                           Condition{8.8, 37, 4, {5.88, 10, 0, 255}}));
+                         ::testing::Values(Condition{"small", 9.2, 150, 15, {58.8, 8, 0, 255}},
+                                           Condition{"large", 19.5, 150, 15, {58.8, 8, 0, 255}},
+                                           Condition{"weak", 8.8, 37, 4, {5.88, 10, 0, 255}}),
+                         [](const auto& tested) { return std::string(tested.param.name); });
 
 }  // namespace
 }  // namespace stereomotion
