@@ -52,6 +52,7 @@ int RunGuarded(const Run& run, const CommonOptions& options) {
 void RequireKnownCommand(int argc, char** argv, const std::map<std::string, Run>& commands) {
   if (argc < 2 || argv[1][0] == '-' || commands.count(argv[1]) > 0) return;
   std::vector<std::string> names;
+  names.reserve(commands.size());
   for (const auto& [name, run] : commands) names.push_back(name);
   throw UserError(fmt::format("this version has no command '{}', expected one of {}{}", argv[1],
                               fmt::join(names, ", "), DidYouMean(argv[1], names)));

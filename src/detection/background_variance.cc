@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 
 #include "rounded_normal.h"
@@ -78,7 +79,7 @@ void AddRounded(const Rounding& at, double variance_dn2, VarianceLine& line) {
 }  // namespace
 
 void AddBackgroundVariance(const BackgroundMap& map, const SensorNoise& noise, VarianceLine& line) {
-  std::map<long, Rounding> rounding;  // many cells share a level
+  std::map<std::int64_t, Rounding> rounding;  // many cells share a level
   for (std::size_t i = 0; i < map.level_dn.size(); ++i) {
     const double expected = noise.VarianceDn2(map.raw_level_dn[i]);
     const double sigma = std::sqrt(expected);
@@ -92,7 +93,7 @@ void AddBackgroundVariance(const BackgroundMap& map, const SensorNoise& noise, V
       line.Add(alpha * sigma, variance, expected, kPixelsPerCell);
       continue;
     }
-    const long level = std::lround(alpha * sigma * kLevelsPerDn);
+    const std::int64_t level = std::lround(alpha * sigma * kLevelsPerDn);
     auto known = rounding.find(level);
     if (known == rounding.end()) {
       const double level_dn = static_cast<double>(level) / kLevelsPerDn;
