@@ -34,9 +34,14 @@ RigCamera ReadCamera(const Place& place, const toml::table& table) {
     throw UserError(place + ": fisheye: found true, expected a pinhole camera");
   }
   const auto size = Numbers(place + ".size", table.get("size"), 2);
+  constexpr double kLargestSide_px = 1e5;
+  // Checked before the conversion: a number beyond int would be undefined behaviour.
+  for (const double side_px : size) {
+    if (side_px < 1) throw UserError(place + ".size: below 1 px");
+    if (side_px > kLargestSide_px) throw UserError(place + ".size: above 100000 px");
+  }
   camera.width_px = static_cast<int>(size[0]);
   camera.height_px = static_cast<int>(size[1]);
-  if (camera.width_px < 1 || camera.height_px < 1) throw UserError(place + ".size: below 1 px");
   const toml::array* rows = table["matrix"].as_array();
   if (rows == nullptr || rows->size() != 3)
     throw UserError(place + ".matrix: expected 3 × 3 numbers");

@@ -268,6 +268,8 @@ TEST(RigFile, AniposeErrors) {
   };
   EXPECT_TRUE(Has(error("fisheye = false", "fisheye = true"), "expected a pinhole camera"));
   EXPECT_TRUE(Has(error("[ 640, 480,]", "[ 640,]"), "cam_0.size: expected a list of 2"));
+  EXPECT_TRUE(Has(error("[ 640, 480,]", "[ 1e300, 480,]"), "cam_0.size: above 100000 px"));
+  EXPECT_TRUE(Has(error("[ 640, 480,]", "[ 640, -1e300,]"), "cam_0.size: below 1 px"));
   EXPECT_TRUE(Has(error("[cam_0]", "[cam_0"), "c.toml:1: is not valid TOML"));
 }
 
