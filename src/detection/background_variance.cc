@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 
+#include "normal_distribution.h"
 #include "rounded_normal.h"
 
 namespace stereomotion {
@@ -33,8 +34,8 @@ struct ClippedNormal {
 /// Clips a normal distribution whose mean is `alpha` σ at zero (Greene, Econometric Analysis, ch.
 /// 19).
 ClippedNormal ClipAtZero(double alpha) {
-  const double above = 0.5 * std::erfc(-alpha / std::sqrt(2.0));
-  const double density = std::exp(-0.5 * alpha * alpha) / std::sqrt(2 * 3.14159265358979323846);
+  const double above = NormalCdf(alpha);
+  const double density = NormalDensity(alpha);
   const double mean = alpha * above + density;
   return {mean, (alpha * alpha + 1) * above + alpha * density - mean * mean};
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "normal_distribution.h"
+
 namespace stereomotion {
 namespace {
 
@@ -12,8 +14,6 @@ constexpr int kMargin_px = 6;
 /// A blob above threshold has its tail below it; a half-height cut lies deeper inside.
 constexpr int kThresholdTail_px = 1;
 constexpr int kHalfHeightTail_px = 3;
-
-constexpr double kPi = 3.14159265358979323846;
 
 BallModel InitialModel(const Blob& blob, const Eigen::Vector2d& origin_px) {
   using P = BallModel;

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "normal_distribution.h"
+
 namespace stereomotion {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Pixel aperture, part of the fitted blur: a box of one pixel has variance 1/12.
 constexpr double kPixelVariance_px2 = 1.0 / 12.0;
 /// A blob thinner than this, by its moments, is a wire or a streak.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "normal_distribution.h"
+
 namespace stereomotion {
 namespace {
 
@@ -32,9 +34,8 @@ EdgeTable::EdgeTable() {
     const double before = Height(z - kStep);
     const double here = Height(z);
     const double after = Height(z + kStep);
-    coverage_[i] = static_cast<float>(0.5 * std::erfc(-z / std::sqrt(2.0)));
-    slope_[i] =
-        static_cast<float>(std::exp(-0.5 * z * z) / std::sqrt(2.0 * 3.14159265358979323846));
+    coverage_[i] = static_cast<float>(NormalCdf(z));
+    slope_[i] = static_cast<float>(NormalDensity(z));
     height_[i] = static_cast<float>(here);
     height_slope_[i] = static_cast<float>((after - before) / (2 * kStep));
     height_curvature_[i] = static_cast<float>((after - 2 * here + before) / (kStep * kStep));

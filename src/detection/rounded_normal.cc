@@ -2,13 +2,9 @@
 
 #include <cmath>
 
+#include "normal_distribution.h"
+
 namespace stereomotion {
-namespace {
-
-double NormalCdf(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
-
-}  // namespace
-
 RoundedNormal RoundNormal(double mean, double variance) {
   constexpr double kReach_sigma = 7.5;
   const double sigma = std::sqrt(variance);
