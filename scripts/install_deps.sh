@@ -7,7 +7,7 @@ set -euo pipefail
 packages=(
   ca-certificates g++ cmake ninja-build ccache python3 dpkg-dev file
   libeigen3-dev libopencv-dev libyaml-cpp-dev libtomlplusplus-dev nlohmann-json3-dev
-  libfmt-dev libspdlog-dev libcli11-dev libssl-dev zlib1g-dev
+  libfmt-dev libspdlog-dev libcli11-dev libssl-dev zlib1g-dev libapriltag-dev
   libgtest-dev libbenchmark-dev
 )
 if [[ ${1:-} == --lint ]]; then packages+=(clang-tidy clang-format); fi

@@ -26,7 +26,15 @@ ALLOWED["simulation"] = up_to("pose")
 ALLOWED["io"] = up_to("motion")
 
 # Single headers beyond that: plain values which files are read into.
-EXTRA_HEADERS = {"io": {"simulation/scenario.h"}}
+EXTRA_HEADERS = {
+    "io": {
+        "simulation/scenario.h",
+        "calibration/calibration.h",
+        "calibration/calibration_setup.h",
+        "calibration/find_control_points.h",
+        "calibration/target.h",
+    }
+}
 
 STD_HEADERS = set(
     """algorithm any array atomic bitset cassert ccomplex cctype cerrno cfenv cfloat charconv chrono
