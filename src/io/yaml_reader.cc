@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <sstream>
 
+#include "read_text.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/suggest.h"
 
@@ -27,25 +26,10 @@ std::string Shown(double number) {
   return stream.str();
 }
 
-// Reads the whole file first: a failing disk or a folder must not surface inside the parser.
-std::string ReadText(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(file, ignored)) {
-    throw UserError(file.string() + ": found a folder, expected a YAML file");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw UserError(file.string() + ": cannot be read, expected a YAML file");
-  try {
-    return {std::istreambuf_iterator<char>(stream), {}};
-  } catch (const std::ios_base::failure&) {
-    throw UserError(file.string() + ": cannot be read to its end, expected a YAML file");
-  }
-}
-
 }  // namespace
 
 YamlReader YamlReader::Load(const std::filesystem::path& file) {
-  const std::string text = ReadText(file);
+  const std::string text = ReadText(file, "a YAML file");
   try {
     return {file, YAML::Load(text), "", 1};
   } catch (const YAML::Exception& error) {

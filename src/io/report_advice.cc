@@ -1,0 +1,54 @@
+#include <array>
+#include <string>
+#include <utility>
+
+#include "report_verdict.h"
+
+namespace stereomotion {
+namespace {
+
+// In the order in which docs/formats.md lists them.
+using Pair = std::pair<const char*, const char*>;
+constexpr std::array<Pair, 13> kAdvice = {{
+    {"outliers",
+     "Look at these image points: covered, exchanged ids, reflections? If the ids are "
+     "right and many points of one view are listed, take that view again."},
+    {"intrinsics_reduced",
+     "Survey more control points, or calibrate the lens with a board first "
+     "and give its values as `initial` with `free: []`."},
+    {"systematic_residuals",
+     "Do not trust the stated uncertainties. Estimate more of the lens "
+     "(`free`), look for glass or water between camera and target, and "
+     "for errors of the target's coordinates."},
+    {"image_noise",
+     "Look for blur, vibration, uneven light or saturated balls; the uncertainties "
+     "given here contain the larger noise already."},
+    {"survey_sigma",
+     "Give the survey's true `sigma_mm`, or survey again; the uncertainties given "
+     "here contain the scale already."},
+    {"ball_size", "Check `ball_diameter_mm` and the unit of the coordinates: both are in mm."},
+    {"implausible_distance", "Check the unit of the target's lengths: mm."},
+    {"blurred_view",
+     "Hold the target still, shorten the exposure or focus again, or leave the view "
+     "out."},
+    {"poor_coverage",
+     "Move the target until it has been seen all over each image, also in the "
+     "corners."},
+    {"no_depth_variation", "Move the target towards the cameras and away, or use a deeper one."},
+    {"few_views", "Take more views: 10 to 30."},
+    {"similar_views", "Tilt the board by 30 to 45 degrees, in different directions."},
+    {"weak_focal_length",
+     "Add depth and tilt, or give a known focal length as `initial` and leave "
+     "it out of `free`."},
+}};
+
+}  // namespace
+
+std::string Advice(const std::string& warning) {
+  for (const auto& [name, text] : kAdvice) {
+    if (warning == name) return text;
+  }
+  return "";
+}
+
+}  // namespace stereomotion
