@@ -21,7 +21,10 @@ struct CommonOptions {
 using Run = std::function<int(const CommonOptions&)>;
 
 // Each adds its subcommand with its options to `app`; the result runs it.
+Run AddCalibrateCommand(CLI::App& app);
 Run AddTrackCommand(CLI::App& app);
 Run AddSimulateCommand(CLI::App& app);
+Run AddConvertCommand(CLI::App& app);
+Run AddPrintTargetCommand(CLI::App& app);
 
 }  // namespace stereomotion::app

@@ -14,8 +14,8 @@ constexpr std::int64_t kWidth = 30;
 
 }  // namespace
 
-Progress::Progress(std::int64_t total, bool quiet)
-    : total_(total), shown_(!quiet && total > 0 && isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(std::int64_t total, bool quiet, const char* unit)
+    : total_(total), shown_(!quiet && total > 0 && isatty(STDERR_FILENO) == 1), unit_(unit) {}
 
 Progress::~Progress() { Clear(); }
 
@@ -36,8 +36,8 @@ void Progress::Draw(double elapsed_s) const {
   const std::string bar = std::string(filled, '#') + std::string(kWidth - filled, '.');
   const double rate = static_cast<double>(done_) / (elapsed_s > 0 ? elapsed_s : 1);
   const double left_s = static_cast<double>(total_ - done_) / (rate > 0 ? rate : 1);
-  const std::string line = fmt::format("\r[{}] {}/{}  {:.1f} pairs/s  {:.0f} s left\x1b[K", bar,
-                                       done_, total_, rate, left_s);
+  const std::string line = fmt::format("\r[{}] {}/{}  {:.1f} {}/s  {:.0f} s left\x1b[K", bar, done_,
+                                       total_, rate, unit_, left_s);
   std::fputs(line.c_str(), stderr);
 }
 

@@ -258,9 +258,9 @@ class BadInput(unittest.TestCase):
                      result=self.track("--fps", "30"))
 
     def test_unknown_command(self):
-        result = run("calibrate", "frame.yaml", cwd=self.dir)
-        self.refused(2, "this version has no command 'calibrate', expected one of simulate, track",
-                     result=result)
+        result = run("record", "--output", "rec", cwd=self.dir)
+        self.refused(2, "this version has no command 'record', expected one of calibrate, convert, "
+                     "print-target, simulate, track", result=result)
         self.assertNotIn("did you mean", result.stderr)
         self.refused(2, "did you mean 'track'?", result=run("trak", cwd=self.dir))
 
