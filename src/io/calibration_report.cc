@@ -31,17 +31,19 @@ tr.bad td { background: #fbe9e7; }
   gap: 12px 24px; }
 .slices { display: flex; flex-wrap: wrap; gap: 6px; }
 figure { margin: 6px 0; break-inside: avoid; } figcaption { max-width: 560px; }
-.slice { width: 238px; } .bar { width: 84px; }
+.slice { width: 338px; } .bar { width: 84px; }
 svg { width: 100%; height: auto; display: block; fill: #333; }
 svg text { font: 12px system-ui, "Helvetica Neue", Arial, sans-serif; }
 svg text.cell { font-size: 10px; }
-svg text.bad { fill: #b3261e; font-size: 11px; }
+svg text.bad { fill: #b3261e; font-size: 11px; paint-order: stroke; stroke: #fff;
+  stroke-width: 3px; }
+sub, sup { line-height: 0; }
 .frame { fill: none; stroke: #888; } .axis { stroke: #888; fill: none; }
-.vector { stroke: #2a5d8f; stroke-width: 1; fill: none; opacity: .75; }
+.vector { stroke: #2a5d8f; stroke-width: 1; fill: none; opacity: .65; }
 .dot { stroke: #2a5d8f; stroke-width: 2.4; stroke-linecap: round; }
 .outlier { stroke: #c62828; stroke-width: 1.4; fill: none; }
 .scale { stroke: #222; stroke-width: 1.4; fill: none; }
-.cloud { stroke: #999; stroke-width: 2.2; stroke-linecap: round; opacity: .6; }
+.cloud { stroke: #777; stroke-width: 2.6; stroke-linecap: round; opacity: .6; }
 .band { fill: #f0f0f0; } .ring { stroke: #1f5fa8; stroke-width: 2.2; fill: none; }
 .across { stroke: #d07000; } .radial { color: #1f5fa8; } .tangential { color: #b86200; }
 .unseen { fill: url(#hatch); }

@@ -9,7 +9,7 @@ namespace {
 
 // In the order in which docs/formats.md lists them.
 using Pair = std::pair<const char*, const char*>;
-constexpr std::array<Pair, 13> kAdvice = {{
+constexpr std::array<Pair, 21> kAdvice = {{
     {"outliers",
      "Look at these image points: covered, exchanged ids, reflections? If the ids are "
      "right and many points of one view are listed, take that view again."},
@@ -40,6 +40,19 @@ constexpr std::array<Pair, 13> kAdvice = {{
     {"weak_focal_length",
      "Add depth and tilt, or give a known focal length as `initial` and leave "
      "it out of `free`."},
+    {"distortion_undetermined",
+     "Nothing to do if you measure only where the target was seen; else show it "
+     "further out in the images."},
+    {"implausible_lens",
+     "Do not measure with this rig: add points, check their ids, or give a known lens "
+     "(`initial`, `free: []`)."},
+    {"board_shape",
+     "Mount the board on something flat and stiff; its shape is in the fit already."},
+    {"swapped_cameras", "Look whether each camera's images are its own."},
+    {"contradicting_seeds", "Correct the ids in the seeds file; these seeds were not used."},
+    {"noise_unknown", "Harmless; more images of balls tell the noise."},
+    {"board_not_found", "Leave the image out, or check rows, columns and light."},
+    {"wand_not_found", "Leave the image out, or check that all balls are in it and bright."},
 }};
 
 }  // namespace
