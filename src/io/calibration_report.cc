@@ -31,7 +31,7 @@ tr.bad td { background: #fbe9e7; }
   gap: 12px 24px; }
 .slices { display: flex; flex-wrap: wrap; gap: 6px; }
 figure { margin: 6px 0; break-inside: avoid; } figcaption { max-width: 560px; }
-.slice { width: 338px; } .bar { width: 84px; }
+.slice { width: 338px; } .bar { width: 94px; }
 svg { width: 100%; height: auto; display: block; fill: #333; }
 svg text { font: 12px system-ui, "Helvetica Neue", Arial, sans-serif; }
 svg text.cell { font-size: 10px; }

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "report_color.h"
 #include "report_sections.h"
@@ -12,8 +14,8 @@
 namespace stereomotion {
 namespace {
 
-constexpr double kStrong = 0.9;  // |correlation| from which a pair is named
-constexpr std::size_t kMostPairs = 8;
+constexpr double kStrong = 0.9;        // |correlation| from which a pair is named
+constexpr std::size_t kMostPairs = 3;  // of one meaning
 constexpr int kMostDirections = 3;
 
 struct Pair {
@@ -51,13 +53,14 @@ std::string Meaning(const RigParameter& a, const RigParameter& b) {
     const Kind first = KindOf(a.index), second = KindOf(b.index);
     return (first == x && second == y) || (first == y && second == x);
   };
-  if (a.camera != b.camera) return "the cameras move together against the target";
+  if (a.camera != b.camera) return "the cameras change together";
   if (is(Kind::kFocal, Kind::kFocal)) return "one focal length; usual with square pixels";
   if (is(Kind::kFocal, Kind::kDistance)) {
-    return "focal length and distance are hardly separable: add depth or tilt";
+    return "focal length and distance are hardly separable; add depth or tilt";
   }
   if (is(Kind::kPrincipal, Kind::kRotation) || is(Kind::kPrincipal, Kind::kSideways)) {
-    return "a shifted principal point looks like a turned or shifted camera: add tilt and depth";
+    return "a shifted principal point looks like a turned or shifted camera; tilt and depth "
+           "separate them";
   }
   if (is(Kind::kPrincipal, Kind::kTangential)) {
     return "principal point and tangential distortion replace each other; harmless";
@@ -71,22 +74,44 @@ std::string Meaning(const RigParameter& a, const RigParameter& b) {
   return "";
 }
 
+std::string CorrelationText(double correlation) {
+  constexpr double kAlmostOne = 0.9995;  // would be rounded to 1
+  if (std::abs(correlation) < kAlmostOne) return fmt::format("{:.3f}", correlation);
+  return correlation > 0 ? "&gt;0.999" : "&lt;-0.999";
+}
+
+std::string GroupSentence(const ParameterSpread& spread, const std::string& meaning,
+                          const std::vector<Pair>& members) {
+  std::string text = "<li>" + (meaning.empty() ? "others" : meaning) + ":";
+  for (std::size_t i = 0; i < std::min(kMostPairs, members.size()); ++i) {
+    text +=
+        fmt::format("{} <code>{}</code> – <code>{}</code> ({})", i > 0 ? "," : "",
+                    EscapeHtml(spread.names[members[i].a]), EscapeHtml(spread.names[members[i].b]),
+                    CorrelationText(members[i].correlation));
+  }
+  if (members.size() > kMostPairs) text += fmt::format(" and {} more", members.size() - kMostPairs);
+  return text + "</li>\n";
+}
+
 std::string PairSentences(const ReportData& data, const ParameterSpread& spread) {
   const auto pairs = StrongPairs(spread.correlation);
   if (pairs.empty()) {
     return fmt::format("<p>No two parameters are correlated by more than {}.</p>\n", kStrong);
   }
   const auto& parameters = data.calibration.rig.covariance->parameters;
-  std::string text = fmt::format(
-      "<p>{} pairs of parameters are correlated by {} and more; the strongest:</p>\n<ul>\n",
-      pairs.size(), kStrong);
-  for (std::size_t i = 0; i < std::min(kMostPairs, pairs.size()); ++i) {
-    const Pair& pair = pairs[i];
+  // What means the same stands together, the strongest first.
+  std::vector<std::pair<std::string, std::vector<Pair>>> groups;
+  for (const Pair& pair : pairs) {
     const std::string meaning = Meaning(parameters[pair.a], parameters[pair.b]);
-    text += fmt::format("<li><code>{}</code> and <code>{}</code>: {:.3f}{}</li>\n",
-                        EscapeHtml(spread.names[pair.a]), EscapeHtml(spread.names[pair.b]),
-                        pair.correlation, meaning.empty() ? "" : " (" + meaning + ")");
+    auto group = std::find_if(groups.begin(), groups.end(),
+                              [&](const auto& g) { return g.first == meaning; });
+    if (group == groups.end()) group = groups.insert(groups.end(), {meaning, {}});
+    group->second.push_back(pair);
   }
+  std::string text =
+      fmt::format("<p>{} pairs of parameters are correlated by {} and more:</p>\n<ul>\n",
+                  pairs.size(), kStrong);
+  for (const auto& [meaning, members] : groups) text += GroupSentence(spread, meaning, members);
   return text + "</ul>\n";
 }
 
@@ -123,7 +148,7 @@ std::string DirectionSentences(const ParameterSpread& spread) {
 }
 
 std::string HeatMap(const ParameterSpread& spread) {
-  constexpr double kSide = 510, kLabels = 92, kBar = 90, kMaxCell = 24;
+  constexpr double kSide = 510, kLabels = 92, kBar = 94, kMaxCell = 24;
   const int n = static_cast<int>(spread.names.size());
   const double cell = std::min(kMaxCell, kSide / n);
   const double side = cell * n;

@@ -39,7 +39,7 @@ std::string Cells(const PlotBox& box, const std::vector<int>& counts, int most) 
                         counts[i] > 0 ? SequentialColor(share) : "#ffffff");
     if (counts[i] == 0) continue;
     text += SvgText(left + width / 2, top + height / 2 + 3, "middle", fmt::format("{}", counts[i]),
-                    fmt::format("class=\"cell\" fill=\"{}\"", TextColorOn(share)));
+                    fmt::format(R"(class="cell" fill="{}")", TextColorOn(share)));
   }
   return text;
 }

@@ -48,8 +48,10 @@ std::map<std::pair<int, int>, double> SigmaByParameter(const Rig& rig) {
 
 std::string PositionSentence(const RigCamera& camera) {
   const Eigen::Vector3d center = camera.cam_from_world.Inverse().translation_mm;
-  return fmt::format("{} stands at ({:.1f}, {:.1f}, {:.1f}) mm in the world",
-                     EscapeHtml(camera.name), center.x(), center.y(), center.z());
+  constexpr double kShown_mm = 1;  // one decimal more than this
+  const auto place = [&](int i) { return ValueText(center[i], kShown_mm); };
+  return fmt::format("{} stands at ({}, {}, {}) mm in the world", EscapeHtml(camera.name), place(0),
+                     place(1), place(2));
 }
 
 std::string PositionsParagraph(const Rig& rig) {

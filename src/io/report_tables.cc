@@ -91,11 +91,14 @@ std::string CheckPointsSection(const ReportData& data) {
                                "in σ", "cameras"});
   for (const CheckPoint& check : data.calibration.check_points) {
     const auto in_sigmas = ErrorInSigmas(check);
+    const double expected_mm = std::sqrt(check.covariance_mm2.trace());
+    const auto coordinate = [covariance = check.covariance_mm2, error = check.error_mm](int i) {
+      return ValueText(error[i], std::sqrt(covariance(i, i)));
+    };
     const bool suspect = in_sigmas.value_or(0) > kSuspectSigmas;
     table.AddRow(
-        {Code(PointId(data.setup, check.point)), Digits(check.error_mm.x(), 2),
-         Digits(check.error_mm.y(), 2), Digits(check.error_mm.z(), 2),
-         Digits(check.error_mm.norm(), 2), Digits(std::sqrt(check.covariance_mm2.trace()), 2),
+        {Code(PointId(data.setup, check.point)), coordinate(0), coordinate(1), coordinate(2),
+         ValueText(check.error_mm.norm(), expected_mm), Digits(expected_mm, 2),
          Digits(in_sigmas, 2), fmt::format("{}", check.num_cameras)},
         suspect ? "bad" : "");
   }

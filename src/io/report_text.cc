@@ -67,7 +67,9 @@ std::string ValueText(double value, double sigma) {
   if (!std::isfinite(value)) return kNone;
   constexpr int kSigmaDigits = 2, kDigitsWithoutSigma = 6, kMost = 12;
   if (!(sigma > 0) || !std::isfinite(sigma)) return Digits(value, kDigitsWithoutSigma);
-  return fmt::format("{:.{}f}", value, std::min(kMost, DecimalsFor(sigma, kSigmaDigits)));
+  const int decimals = std::min(kMost, DecimalsFor(sigma, kSigmaDigits));
+  const double half_step = 0.5 * std::pow(10, -decimals);
+  return fmt::format("{:.{}f}", std::abs(value) < half_step ? 0.0 : value, decimals);  // no "-0.00"
 }
 
 HtmlTable::HtmlTable(std::string columns, const std::vector<std::string>& heads)

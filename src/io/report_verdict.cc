@@ -17,21 +17,22 @@ constexpr double kSuspect = 1.5, kWrong = 2.5;
 // Single image points are mislabelled or covered in every recording; more of them is a pattern.
 constexpr double kFewOutliers = 0.02;
 
-const std::array<const char*, 3> kGrave = {"systematic_residuals", "ball_size",
-                                           "implausible_distance"};
+const std::array<const char*, 5> kGrave = {"systematic_residuals", "ball_size",
+                                           "implausible_distance", "implausible_lens",
+                                           "swapped_cameras"};
 
-double WorstRatio(const Calibration& calibration, const CalibrationSummary& summary) {
-  double worst = 0;
-  const auto add = [&](double rms_mm, double predicted_mm) {
-    if (predicted_mm > 0) worst = std::max(worst, rms_mm / predicted_mm);
-  };
-  if (summary.check_points) {
-    add(summary.check_points->rms_mm, summary.check_points->predicted_rms_mm);
-  }
-  if (const auto& cross = calibration.cross_validation) {
-    add(cross->rms_mm, cross->predicted_rms_mm);
-  }
-  return worst;
+double Ratio(double rms_mm, double predicted_mm) {
+  return predicted_mm > 0 ? rms_mm / predicted_mm : 0;
+}
+
+double CheckRatio(const CalibrationSummary& summary) {
+  const auto& held = summary.check_points;
+  return held ? Ratio(held->rms_mm, held->predicted_rms_mm) : 0;
+}
+
+double CrossRatio(const Calibration& calibration) {
+  const auto& cross = calibration.cross_validation;
+  return cross ? Ratio(cross->rms_mm, cross->predicted_rms_mm) : 0;
 }
 
 double ShareLeftOut(const CalibrationSummary& summary) {
@@ -106,8 +107,11 @@ std::string HeldOutSentence(const std::string& who, double rms_mm, double predic
 }  // namespace
 
 VerdictLevel Judge(const Calibration& calibration, const CalibrationSummary& summary) {
-  const double ratio = WorstRatio(calibration, summary);
-  bool warned = ratio > kSuspect, grave = ratio > kWrong;
+  // Cross-validation compares outliers, too: with them it says nothing grave about the rig.
+  const double check = CheckRatio(summary), cross = CrossRatio(calibration);
+  const bool outliers = ShareLeftOut(summary) > 0;
+  bool warned = std::max(check, cross) > kSuspect;
+  bool grave = check > kWrong || (cross > kWrong && !outliers);
   for (const CalibrationNote& note : calibration.warnings) {
     grave = grave || std::find(kGrave.begin(), kGrave.end(), note.name) != kGrave.end();
     warned = warned || note.name != "outliers" || ShareLeftOut(summary) > kFewOutliers;
@@ -138,10 +142,11 @@ std::vector<std::string> VerdictSentences(const Calibration& calibration,
                         held->rms_mm, held->predicted_rms_mm));
   }
   if (const auto& cross = calibration.cross_validation) {
-    sentences.push_back(
-        HeldOutSentence(fmt::format("{}-fold cross-validation, {} points each calibrated without",
-                                    cross->folds, cross->num_points),
-                        cross->rms_mm, cross->predicted_rms_mm));
+    sentences.push_back(HeldOutSentence(
+        fmt::format("{}-fold cross-validation, {} points each calibrated without{}", cross->folds,
+                    cross->num_points,
+                    ShareLeftOut(summary) > 0 ? " (outliers are compared, too)" : ""),
+        cross->rms_mm, cross->predicted_rms_mm));
   }
   if (!summary.check_points && !calibration.cross_validation) {
     sentences.emplace_back(

@@ -25,7 +25,7 @@ double StepOf(const std::vector<double>& ticks) {
 }
 
 std::string Line(double x1, double y1, double x2, double y2) {
-  return fmt::format("<path class=\"axis\" d=\"M{} {}L{} {}\"/>", Px(x1), Px(y1), Px(x2), Px(y2));
+  return fmt::format(R"(<path class="axis" d="M{} {}L{} {}"/>)", Px(x1), Px(y1), Px(x2), Px(y2));
 }
 
 std::string Upright(double x, double y, const std::string& text) {
@@ -79,7 +79,7 @@ double Axes::Y(double number) const {
 std::string Axes::XTicks() const {
   constexpr double kTickEvery = 65;
   const double bottom = box_.top + box_.height;
-  const auto ticks = RoundTicks(x_, std::max(2, static_cast<int>(box_.width / kTickEvery)));
+  const auto ticks = RoundTicks(x_, std::max(3, static_cast<int>(box_.width / kTickEvery)));
   std::string text;
   for (const double tick : ticks) {
     text += Line(X(tick), bottom, X(tick), bottom + kTick) +
@@ -90,7 +90,7 @@ std::string Axes::XTicks() const {
 
 std::string Axes::YTicks() const {
   constexpr double kTickEvery = 45;
-  const auto ticks = RoundTicks(y_, std::max(2, static_cast<int>(box_.height / kTickEvery)));
+  const auto ticks = RoundTicks(y_, std::max(3, static_cast<int>(box_.height / kTickEvery)));
   std::string text;
   for (const double tick : ticks) {
     text += Line(box_.left - kTick, Y(tick), box_.left, Y(tick)) +
@@ -112,16 +112,16 @@ std::string Axes::Frame(const std::string& x_name, const std::string& y_name) co
 std::string ColorBar(const PlotBox& box, const PlotRange& range, const std::string& name,
                      const std::function<std::string(double)>& color_of_number) {
   constexpr int kSteps = 40;
-  constexpr double kNameRight = 58;
+  constexpr double kNameRight = 68;
   const Axes axes({0, 1}, range, box);
   std::string text;
   for (int i = 0; i < kSteps; ++i) {
     const double number = range.low + (range.high - range.low) * (i + 0.5) / kSteps;
     const double top = box.top + box.height * (kSteps - 1 - i) / kSteps;
     // Half a px over the next one: no seams.
-    text += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>",
-                        Px(box.left), Px(top), Px(box.width),
-                        Px(box.height / kSteps + (i > 0 ? 0.5 : 0)), color_of_number(number));
+    text += fmt::format(R"(<rect x="{}" y="{}" width="{}" height="{}" fill="{}"/>)", Px(box.left),
+                        Px(top), Px(box.width), Px(box.height / kSteps + (i > 0 ? 0.5 : 0)),
+                        color_of_number(number));
   }
   const auto ticks = RoundTicks(range, 4);
   for (const double tick : ticks) {

@@ -70,6 +70,7 @@ TEST(ReportText, Numbers) {
   EXPECT_EQ(ValueText(-0.07031234, 0.00031), "-0.07031");
   EXPECT_EQ(ValueText(1643.4219, 0), "1643.42");
   EXPECT_EQ(ValueText(1643.4219, 250), "1643");
+  EXPECT_EQ(ValueText(-0.0004, 0.1), "0.00");
 }
 
 }  // namespace
