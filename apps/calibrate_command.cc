@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <set>
 
@@ -118,13 +120,13 @@ CalibrationInputs DescribeInputs(const CalibrateInputs& inputs, const CommonOpti
 }
 
 // A rig that somebody may still need is set aside, not lost.
-void SetAside(const fs::path& file) {
+void AddFormerRig(const fs::path& file, std::vector<TextFile>& files) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return;
-  const fs::path former = file.string() + ".old";
-  fs::rename(file, former, error);
-  if (error) throw OutputError(former.string() + ": cannot be written: " + error.message());
-  spdlog::info("the former {} is now {}", file.string(), former.string());
+  std::ifstream stream(file, std::ios::binary);
+  files.push_back(
+      {file.string() + ".old", std::string(std::istreambuf_iterator<char>(stream), {})});
+  spdlog::info("the former {} goes to {}.old", file.string(), file.string());
 }
 
 // Where the numbers of the report go.
@@ -135,15 +137,15 @@ fs::path JsonBeside(const std::string& report) {
 void Write(const CalibrateCommand& command, const Calibration& calibration,
            const CalibrateInputs& inputs, const CommonOptions& common) {
   const std::string date = Date();
-  const std::string rig =
-      RigYaml(calibration.rig, MakeRecord(calibration, inputs, command.frame, date));
-  SetAside(command.output);
-  WriteFileAtomically(command.output, rig);
   const CalibrationInputs described = DescribeInputs(inputs, common, date);
-  const fs::path report = command.report;
-  WriteFileAtomically(report, CalibrationHtml(calibration, inputs.file.setup, described));
-  WriteFileAtomically(JsonBeside(command.report),
-                      CalibrationJson(calibration, inputs.file.setup, described));
+  std::vector<TextFile> files;
+  AddFormerRig(command.output, files);
+  files.push_back({command.output,
+                   RigYaml(calibration.rig, MakeRecord(calibration, inputs, command.frame, date))});
+  files.push_back({command.report, CalibrationHtml(calibration, inputs.file.setup, described)});
+  files.push_back(
+      {JsonBeside(command.report), CalibrationJson(calibration, inputs.file.setup, described)});
+  WriteFilesAtomically(files);
 }
 
 void CheckOutputs(const CalibrateCommand& command) {
@@ -165,6 +167,19 @@ void CheckOutputs(const CalibrateCommand& command) {
         "calibrate: {} would be written over another of its files; expected different names for "
         "frame.yaml, --output, --report and the report's numbers ({})",
         file.string(), JsonBeside(command.report).string()));
+  }
+}
+
+// A slip of the finger must not turn the seeds into a rig.
+void CheckInputsStay(const CalibrateCommand& command, const FrameFile& file) {
+  for (const fs::path& output :
+       {fs::path(command.output), fs::path(command.report), JsonBeside(command.report)}) {
+    for (const fs::path& input : file.inputs) {
+      std::error_code error;
+      if (!fs::equivalent(output, input, error)) continue;
+      throw UserError(fmt::format("calibrate: {} is read from, expected another name to write to",
+                                  output.string()));
+    }
   }
 }
 
@@ -195,6 +210,11 @@ int RunCalibrate(CalibrateCommand command, const CommonOptions& common) {
   if (command.output.empty()) command.output = "rig.yaml";
   CheckOutputs(command);
   const CalibrateInputs inputs = LoadCalibrateInputs(command.frame, command.threads, common);
+  if (inputs.interrupted) {
+    fmt::print(stderr, "stereomotion: interrupted; nothing was written\n");
+    return kNoAnswer;
+  }
+  CheckInputsStay(command, inputs.file);
   if (inputs.blind_camera) return Fail(command, *inputs.blind_camera);
   for (const auto& note : inputs.notes) spdlog::warn("{}: {}", note.name, note.text);
   CalibrateOptions options;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <mutex>
+#include <opencv2/core/utility.hpp>
 #include <thread>
 
 #include "progress.h"
@@ -13,6 +14,7 @@
 #include "stereomotion/capture/read_image.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/detection/estimate_noise.h"
+#include "stop_signal.h"
 
 namespace stereomotion::app {
 namespace {
@@ -88,13 +90,16 @@ void RunJob(Job& job) {
   job.sight = ObserveTarget(view, *job.target, job.which);
 }
 
-void RunJobs(std::vector<Job>& jobs, int threads, const CommonOptions& common) {
+void RunJobs(std::vector<Job>& jobs, int threads, const CommonOptions& common,
+             const std::atomic<bool>& stop) {
+  // One thread an image; OpenCV's own threads would only change the order of sums.
+  cv::setNumThreads(1);
   Progress progress(static_cast<std::int64_t>(jobs.size()), common.quiet, "images");
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::exception_ptr failure;
   const auto work = [&] {
-    for (std::size_t i = next++; i < jobs.size(); i = next++) {
+    for (std::size_t i = next++; i < jobs.size() && !stop; i = next++) {
       try {
         RunJob(jobs[i]);
       } catch (...) {
@@ -168,6 +173,40 @@ CalibrationNote AboutImage(const fs::path& image, const CalibrationNote& note) {
   return {note.name, fmt::format("{}: {}", image.string(), note.text)};
 }
 
+// The last number in a file's name; nothing without one.
+std::optional<long> NumberInName(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  const auto end = stem.find_last_of("0123456789");
+  if (end == std::string::npos) return std::nullopt;
+  const auto before = stem.find_last_not_of("0123456789", end);
+  const auto begin = before == std::string::npos ? 0 : before + 1;
+  if (end - begin > 15) return std::nullopt;  // a time or a serial, not a count
+  return std::stol(stem.substr(begin, end - begin + 1));
+}
+
+// Views are paired by their order. Numbers in the names that disagree, other than by a constant,
+// mean that an image is missing somewhere.
+void CheckFileNumbers(const FrameFile& file, std::vector<CalibrationNote>& notes) {
+  if (file.setup.target.type == TargetType::kControlPoints) return;  // a frame at rest
+  const auto& first = file.cameras[0].images;
+  for (std::size_t c = 1; c < file.cameras.size(); ++c) {
+    const auto& other = file.cameras[c].images;
+    std::optional<long> shift;
+    for (std::size_t view = 0; view < std::min(first.size(), other.size()); ++view) {
+      const auto a = NumberInName(first[view]), b = NumberInName(other[view]);
+      if (!a || !b) break;
+      if (!shift) shift = *b - *a;
+      if (*b - *a == *shift) continue;
+      notes.push_back(
+          {"wrong_pairs",
+           fmt::format("view {}: {} and {} are taken as one pair, but their numbers "
+                       "disagree: is an image of one camera missing?",
+                       view, first[view].filename().string(), other[view].filename().string())});
+      break;
+    }
+  }
+}
+
 void Collect(const std::vector<Job>& jobs, CalibrateInputs& inputs) {
   const int own_points = static_cast<int>(inputs.file.setup.target.points.size());
   for (const Job& job : jobs) {
@@ -223,10 +262,14 @@ CalibrateInputs LoadCalibrateInputs(const fs::path& frame, int threads,
   inputs.image_sigma_known = HasBalls(file.setup.target.type);
   std::vector<Job> jobs = ListJobs(file, inputs.notes);
   spdlog::info("looking for the target in {} images", jobs.size());
-  RunJobs(jobs, threads, common);
+  const std::atomic<bool>& stop = CatchStopSignals();
+  RunJobs(jobs, threads, common, stop);
+  inputs.interrupted = stop;
+  if (inputs.interrupted) return inputs;
   CheckSizes(jobs, file);
   CheckExchange(jobs, file);
   CheckFolderNames(file, inputs.notes);
+  CheckFileNumbers(file, inputs.notes);
   Collect(jobs, inputs);
   AddMeasured(inputs);
   inputs.blind_camera = FindBlindCamera(jobs, file);

@@ -21,6 +21,7 @@ struct CalibrateInputs {
   std::vector<CalibrationNote> notes;
   /// Why one of the cameras saw nothing in any image: then there is nothing to calibrate from.
   std::optional<CalibrationNote> blind_camera;
+  bool interrupted = false;  ///< by SIGINT or SIGTERM: nothing else holds
 };
 
 /// Reads frame.yaml and its images and finds the target in them, on `threads` threads (0: one a

@@ -23,6 +23,9 @@ namespace {
 constexpr int kLeastControlPoints = 6;
 // Third extent of the points against the first: flatter, and a DLT is noise.
 constexpr double kFlat = 0.01;
+// Distance from the origin against the points' extent (their singular value): further away turning
+// and shifting a camera are one, to all the digits that there are.
+constexpr double kFarOrigin = 200;
 
 // Coordinates in the axes that `world` lays through three of the points.
 Rigid3 WorldFromPoints(const std::vector<TargetPoint>& points, const WorldPoints& world) {
@@ -60,8 +63,17 @@ std::optional<CalibrationNote> CheckControlPoints(
     Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(seen.size()));
     Eigen::Index column = 0;
     for (const int point : seen) points.col(column++) = setup.target.points[point].xyz_mm;
+    const double offset_mm = points.rowwise().mean().norm();
     points.colwise() -= points.rowwise().mean().eval();
     const Eigen::Vector3d extent = Eigen::JacobiSVD<Eigen::Matrix3Xd>(points).singularValues();
+    if (offset_mm > kFarOrigin * extent[0]) {
+      return CalibrationNote{
+          "large_offset",
+          fmt::format("the control points lie {:.0f} m from their coordinates' origin, which costs "
+                      "the digits that tell a camera's place; subtract an offset from all "
+                      "coordinates, or lay the axes through three of them (`world:`)",
+                      offset_mm / 1000)};
+    }
     if (extent[2] > kFlat * extent[0]) continue;
     return CalibrationNote{
         "coplanar", fmt::format("camera {}: the {} control points that it sees lie in a plane (to "
@@ -127,6 +139,77 @@ std::optional<CalibrationNote> CheckViews(const CalibrationSetup& setup,
                                      views.size(), kLeast)};
 }
 
+// A focal length that could as well be half or twice as long.
+std::optional<CalibrationNote> RefuseLens(const FittedBundle& fit) {
+  constexpr double kUnknown = 0.3;
+  const RigCovariance& covariance = fit.solution.rig_covariance;
+  for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(covariance.parameters.size()); ++i) {
+    const RigParameter& parameter = covariance.parameters[i];
+    if (parameter.index != 0) continue;
+    const RigCamera& camera = fit.solution.cameras[parameter.camera];
+    const double sigma = std::sqrt(covariance.matrix(i, i)) / camera.model.fx_px;
+    if (sigma < kUnknown) continue;
+    return CalibrationNote{
+        "undetermined", fmt::format("camera {}: the images leave the focal length open ({:.0f} px "
+                                    "± {:.0f} %): more views, tilt and depth, right pairs, or "
+                                    "`initial` and `free` without fx and fy",
+                                    camera.name, camera.model.fx_px, 100 * sigma)};
+  }
+  return std::nullopt;
+}
+
+// A rig that is plainly wrong must not be written, whatever warnings come with it.
+std::optional<CalibrationNote> RefuseMisfit(const CalibrationSetup& setup, const FittedBundle& fit,
+                                            const CalibrateOptions& options) {
+  constexpr double kWorstScale = 50;    // of a stated σ: no detector and no survey errs so much
+  constexpr double kWorstBoard = 0.02;  // of the board's extent: not paper, but other numbers
+  if (options.image_sigma_known && fit.image_sigma_scale > kWorstScale) {
+    return CalibrationNote{
+        "no_fit",
+        fmt::format("no cameras fit the images: their points scatter {:.0f} times as much "
+                    "as the detector states; wrong target lengths, `initial` values, "
+                    "pairs of images, or a second object?",
+                    fit.image_sigma_scale)};
+  }
+  if (fit.survey_sigma_scale > kWorstScale && !IsBoard(setup.target.type)) {
+    return CalibrationNote{
+        "no_fit",
+        fmt::format("no cameras fit the survey: its points scatter {:.0f} times as much as "
+                    "their sigma_mm states; wrong coordinates, ids or `initial` values?",
+                    fit.survey_sigma_scale)};
+  }
+  double off_mm = 0, extent_mm = 0;
+  for (const BundlePoint& point : fit.solution.points) {
+    off_mm = std::max(off_mm, (point.xyz_mm - point.surveyed_mm).norm());
+    extent_mm =
+        std::max(extent_mm, (point.surveyed_mm - fit.solution.points[0].surveyed_mm).norm());
+  }
+  if (!IsBoard(setup.target.type) || off_mm < kWorstBoard * extent_mm) return RefuseLens(fit);
+  return CalibrationNote{
+      "wrong_board",
+      fmt::format("the board's points lie up to {:.1f} mm from where frame.yaml puts "
+                  "them: rows, cols, sizes, spacing or first_id of another board?",
+                  off_mm)};
+}
+
+int FixedView(const BundleProblem& problem) {
+  for (int view = 0; view < static_cast<int>(problem.views.size()); ++view) {
+    if (problem.views[view].freedom == PoseFreedom::kFixed) return view;
+  }
+  return -1;
+}
+
+// A board's world is view 0, unless that view gave nothing.
+std::optional<CalibrationNote> NoteWorldView(const CalibrationSetup& setup,
+                                             const FittedBundle& fit) {
+  const int view = FixedView(fit.problem);
+  if (!IsBoard(setup.target.type) || view <= 0) return std::nullopt;
+  return CalibrationNote{"world_view",
+                         fmt::format("view 0 does not show the board well enough: the world is the "
+                                     "board in view {}",
+                                     view)};
+}
+
 CalibrationNote Explain(const BundleFailure& failure) {
   switch (failure.reason) {
     case BundleFailure::Reason::kUndetermined:
@@ -184,6 +267,10 @@ void CheckArguments(const CalibrationSetup& setup,
     const bool known = o.camera >= 0 && o.camera < static_cast<int>(setup.cameras.size()) &&
                        o.point >= 0 && o.point < static_cast<int>(points) && o.view >= 0;
     if (!known) throw std::invalid_argument("Calibrate: an observation names what is not there");
+    const double determinant = o.covariance_px2.determinant();
+    if (!o.pixel_px.allFinite() || !(determinant > 0) || !(o.covariance_px2(0, 0) > 0)) {
+      throw std::invalid_argument("Calibrate: an observation's numbers cannot be meant");
+    }
   }
   if (setup.cameras.size() < 2) throw std::invalid_argument("Calibrate: fewer than two cameras");
 }
@@ -226,6 +313,7 @@ Expected<Calibration, CalibrationNote> Calibrate(const CalibrationSetup& asked,
   }
 
   if (auto refusal = RefuseUnits(setup, fitted, *fit)) return Unexpected{std::move(*refusal)};
+  if (auto refusal = RefuseMisfit(setup, *fit, options)) return Unexpected{std::move(*refusal)};
 
   Calibration result = Collect(*fit);
   tell("checking the rig");
@@ -237,6 +325,7 @@ Expected<Calibration, CalibrationNote> Calibrate(const CalibrationSetup& asked,
   }
   if (surveyed && options.folds > 1) result.cross_validation = CrossValidate(*fit, options.folds);
   result.volume = MapVolume(*fit);
+  if (const auto moved = NoteWorldView(setup, *fit)) notes.push_back(*moved);
   result.warnings = std::move(notes);
   for (auto& note : DiagnoseCalibration(setup, fitted, *fit)) {
     result.warnings.push_back(std::move(note));

@@ -1,5 +1,6 @@
 #include "stereomotion/calibration/find_board.h"
 
+#include <opencv2/core.hpp>
 #include <stdexcept>
 
 #include "find_patterns.h"
@@ -21,6 +22,8 @@ void CheckBoard(const Target& target) {
 BoardView FindBoard(const ImageView& image, const Target& target) {
   CheckBoard(target);
   if (image.empty()) return {{}, 0, "the image is empty"};
+  // OpenCV draws from a generator of the thread, which carries on from image to image.
+  cv::theRNG().state = 1;
   if (target.type == TargetType::kAprilTagGrid) return FindTags(image, target);
   if (target.type == TargetType::kChessboard) return FindChessboard(image, target);
   return FindCircles(image, target);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bad_views.h"
 #include "bundle_normals.h"
 #include "median.h"
 
@@ -12,7 +13,7 @@ namespace {
 using Reason = BundleFailure::Reason;
 
 constexpr int kRobustRounds = 4;
-constexpr int kRejectRounds = 10;
+constexpr int kRejectRounds = 20;
 constexpr int kVarianceRounds = 10;
 constexpr double kHuber = 2;               // of robust standard deviations: 86 % of a 2D normal
 constexpr double kFalseRejections = 0.05;  // expected number in a whole calibration of pure noise
@@ -66,7 +67,8 @@ double UsedLimit(const BundleSolution& solution, double gate) {
 }
 
 // Marks what is used; a free view with fewer than four points left is left out as a whole.
-bool MarkOutliers(const BundleSolution& solution, double limit, BundleProblem& problem) {
+bool MarkOutliers(const BundleSolution& solution, double limit,
+                  const std::vector<bool>& view_left_out, BundleProblem& problem) {
   constexpr int kLeastPoints = 4;
   std::vector<int> used_in_view(problem.views.size(), 0);
   for (std::size_t i = 0; i < problem.observations.size(); ++i) {
@@ -76,7 +78,8 @@ bool MarkOutliers(const BundleSolution& solution, double limit, BundleProblem& p
   for (std::size_t i = 0; i < problem.observations.size(); ++i) {
     BundleObservation& observation = problem.observations[i];
     const bool free = problem.views[observation.view].freedom != PoseFreedom::kFixed;
-    const bool view_holds = !free || used_in_view[observation.view] >= kLeastPoints;
+    const bool view_holds = !view_left_out[observation.view] &&
+                            (!free || used_in_view[observation.view] >= kLeastPoints);
     const bool used = view_holds && solution.normalized[i] <= limit;
     changed |= used != observation.used;
     observation.used = used;
@@ -141,15 +144,24 @@ Expected<FittedBundle, BundleFailure> FitBundle(const BundleProblem& problem,
     if (!solution) return Unexpected{solution.error()};
     scale = std::max(least_scale, RobustScale(solution->normalized, fit.problem));
   }
+  std::vector<bool> view_left_out(problem.views.size(), false);
   for (int round = 0; round < kRejectRounds; ++round) {
+    KeepWorldInUsedView(fit.problem);
     const double huber = round == 0 ? kHuber * scale : none;
     const auto solution = Solve(huber, round > 0, fit.problem);
     if (!solution) return Unexpected{solution.error()};
     scale = round == 0 ? RobustScale(solution->normalized, fit.problem) : UsedScale(*solution);
     scale = std::max(least_scale, scale);
     const double gate = Gate(problem.observations.size()) * scale;
-    if (!MarkOutliers(*solution, UsedLimit(*solution, gate), fit.problem)) break;
+    const bool changed =
+        MarkOutliers(*solution, UsedLimit(*solution, gate), view_left_out, fit.problem);
+    const auto bad_view = FindBadView(fit.problem, *solution);
+    if (!changed && !bad_view) break;
+    if (!bad_view) continue;
+    view_left_out[*bad_view] = true;
+    LeaveOut(*bad_view, fit.problem);
   }
+  KeepWorldInUsedView(fit.problem);
   auto solution = EstimateVariances(options, fit);
   if (!solution) return Unexpected{solution.error()};
   fit.solution = std::move(*solution);

@@ -40,6 +40,10 @@ std::string FindExchange(const CalibrationSetup& setup, const FittedBundle& fit,
 std::string Describe(const CalibrationSetup& setup, const FittedBundle& fit,
                      const std::vector<std::size_t>& outliers, std::size_t i) {
   const auto& o = fit.problem.observations[i];
+  if (std::isinf(fit.solution.normalized[i])) {
+    return fmt::format("{} in camera {}, view {}: the camera cannot see it there",
+                       PointOf(setup, o.point).id, setup.cameras[o.camera].name, o.view);
+  }
   return fmt::format("{} in camera {}, view {}: {:.2f} px off{}", PointOf(setup, o.point).id,
                      setup.cameras[o.camera].name, o.view, fit.solution.residuals_px[i].norm(),
                      FindExchange(setup, fit, outliers, i));
@@ -105,6 +109,23 @@ CellTest TestCells(const FittedBundle& fit, int camera, bool static_frame) {
   return test;
 }
 
+// Views of which most was left out: the cameras contradict each other there.
+void NoteLostViews(const FittedBundle& fit, std::vector<CalibrationNote>& notes) {
+  std::map<int, std::pair<int, int>> used_of;
+  for (const auto& o : fit.problem.observations) {
+    used_of[o.view].first += o.used ? 1 : 0;
+    ++used_of[o.view].second;
+  }
+  for (const auto& [view, counts] : used_of) {
+    if (2 * counts.first >= counts.second) continue;
+    notes.push_back({"contradicting_view",
+                     fmt::format("view {}: {} of {} image points were left out: the cameras "
+                                 "contradict each other there; images of different moments, or a "
+                                 "target that moved?",
+                                 view, counts.second - counts.first, counts.second)});
+  }
+}
+
 void NoteBoardShape(const CalibrationSetup& setup, const FittedBundle& fit,
                     std::vector<CalibrationNote>& notes) {
   double worst_mm = 0;
@@ -133,7 +154,10 @@ void NoteOutliers(const CalibrationSetup& setup, const FittedBundle& fit,
     if (!fit.problem.observations[i].used) outliers.push_back(i);
   }
   if (outliers.empty()) return;
-  const auto size = [&](std::size_t i) { return fit.solution.residuals_px[i].norm(); };
+  NoteLostViews(fit, notes);
+  const auto size = [&](std::size_t i) {  // what cannot be projected has no residual: worst of all
+    return std::isinf(fit.solution.normalized[i]) ? 1e9 : fit.solution.residuals_px[i].norm();
+  };
   std::stable_sort(outliers.begin(), outliers.end(),
                    [&](std::size_t a, std::size_t b) { return size(a) > size(b); });
   std::vector<std::string> lines;
@@ -161,8 +185,9 @@ void NoteResiduals(const CalibrationSetup& setup, const FittedBundle& fit,
     notes.push_back(
         {"systematic_residuals",
          fmt::format(
-             "camera {}: systematic residuals: refraction or a wrong lens model; "
-             "neighbouring points err alike, by {:.3f} px (RMS), {:.0f} standard deviations "
+             "camera {}: systematic residuals: refraction or a wrong lens model (`free` too "
+             "short?), or a camera that moved in between; neighbouring points err alike, by {:.3f} "
+             "px (RMS), {:.0f} standard deviations "
              "beyond chance, so that the stated covariance is too small",
              setup.cameras[c].name, test.systematic_px, z)});
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -17,7 +18,7 @@ TargetObservation FromBall(const ObservedImage& which, int point, const BallObse
           ball.covariance_px2, ball.diameter_px(), ball.blur_px};
 }
 
-std::string NameSeeds(const Target& target, const std::vector<int>& points) {
+std::string NamePoints(const Target& target, const std::vector<int>& points) {
   std::vector<std::string> ids;
   for (const int point : points) ids.push_back(target.points[point].id);
   return fmt::format("{}", fmt::join(ids, ", "));
@@ -38,6 +39,25 @@ const char* NameOf(LabelFailure failure) {
   }
 }
 
+// Points that the others put well inside the image, where no ball is.
+std::vector<int> MissingPoints(const ImageView& image, const Target& target,
+                               const ControlPointView& view) {
+  constexpr double kMarginPx = 20;  // a ball and the lens' distortion, which the DLT leaves out
+  std::vector<bool> found(target.points.size(), false);
+  for (const LabelledBall& labelled : view.balls) found[labelled.point] = true;
+  std::vector<int> missing;
+  for (int point = 0; point < static_cast<int>(found.size()); ++point) {
+    if (found[point]) continue;
+    const Eigen::Vector3d projected = view.dlt * target.points[point].xyz_mm.homogeneous();
+    const Eigen::Vector2d pixel_px = projected.hnormalized();
+    const bool inside = projected.z() > 0 && pixel_px.minCoeff() > kMarginPx &&
+                        pixel_px.x() < image.width_px - kMarginPx &&
+                        pixel_px.y() < image.height_px - kMarginPx;
+    if (inside) missing.push_back(point);
+  }
+  return missing;
+}
+
 TargetSight ObserveControlPoints(const ImageView& image, const Target& target,
                                  const ObservedImage& which) {
   TargetSight sight;
@@ -49,12 +69,19 @@ TargetSight ObserveControlPoints(const ImageView& image, const Target& target,
   for (const LabelledBall& labelled : found->balls) {
     sight.observations.push_back(FromBall(which, labelled.point, labelled.ball));
   }
+  const std::vector<int> missing = MissingPoints(image, target, *found);
+  if (!missing.empty()) {
+    sight.notes.push_back(
+        {"points_not_found", fmt::format("no ball where the others put {}: hidden, or coordinates "
+                                         "or ids that contradict the other points? Left out",
+                                         NamePoints(target, missing))});
+  }
   if (!found->contradicting_seeds.empty()) {
     sight.notes.push_back(
         {"contradicting_seeds",
          fmt::format("the seeds of {} lie elsewhere than all other points put them: wrong or "
                      "exchanged ids? They were not used",
-                     NameSeeds(target, found->contradicting_seeds))});
+                     NamePoints(target, found->contradicting_seeds))});
   }
   return sight;
 }

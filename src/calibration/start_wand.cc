@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "place_wand.h"
 #include "start_bundle.h"
@@ -72,23 +73,32 @@ WandStart TryFocal(const BundleProblem& plan, double focal, int num_wand_points)
 // The first `kMostViews` wand views, evenly spread.
 BundleProblem Thinned(const BundleProblem& plan, int num_wand_points) {
   BundleProblem thin = plan;
-  const std::size_t step = (plan.views.size() + kMostViews - 1) / kMostViews;
+  std::set<int> seen;
+  for (const auto& o : plan.observations) {
+    if (o.point < num_wand_points) seen.insert(o.view);
+  }
+  const std::size_t step = (seen.size() + kMostViews - 1) / kMostViews;
+  std::set<int> chosen;
+  std::size_t place = 0;
+  for (const int view : seen) {
+    if (place++ % step == 0) chosen.insert(view);
+  }
   thin.observations.clear();
   for (const auto& o : plan.observations) {
-    if (o.point < num_wand_points && o.view % step == 0) thin.observations.push_back(o);
+    if (o.point < num_wand_points && chosen.count(o.view) > 0) thin.observations.push_back(o);
   }
   return thin;
 }
 
 // χ² of one view's balls as camera 0 and camera `c` labelled them, or with the labels of `c`
-// counted from the other end.
+// counted from the other end; infinite unless both saw the whole wand.
 double LabelMisfit(const BundleProblem& problem, const BallSights& first, const BallSights& other,
                    int view, int num_wand_points, bool reversed) {
   double misfit = 0;
   for (int point = 0; point < num_wand_points; ++point) {
     const auto a = first.find({view, point});
     const auto b = other.find({view, reversed ? num_wand_points - 1 - point : point});
-    if (a == first.end() || b == other.end()) continue;
+    if (a == first.end() || b == other.end()) return std::numeric_limits<double>::infinity();
     const auto found = IntersectRays(problem.cameras, {a->second, b->second});
     misfit += found ? found->chi2 : std::numeric_limits<double>::infinity();
   }

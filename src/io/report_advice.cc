@@ -9,7 +9,7 @@ namespace {
 
 // In the order in which docs/formats.md lists them.
 using Pair = std::pair<const char*, const char*>;
-constexpr std::array<Pair, 21> kAdvice = {{
+constexpr std::array<Pair, 25> kAdvice = {{
     {"outliers",
      "Look at these image points: covered, exchanged ids, reflections? If the ids are "
      "right and many points of one view are listed, take that view again."},
@@ -51,6 +51,10 @@ constexpr std::array<Pair, 21> kAdvice = {{
     {"swapped_cameras", "Look whether each camera's images are its own."},
     {"contradicting_seeds", "Correct the ids in the seeds file; these seeds were not used."},
     {"noise_unknown", "Harmless; more images of balls tell the noise."},
+    {"points_not_found", "Look there: a covered ball, or a wrong coordinate or id."},
+    {"wrong_pairs", "Make sure that image n of each camera shows the same moment."},
+    {"contradicting_view", "Take that view again, or leave it out."},
+    {"world_view", "Take the view whose board shall be the world as the first one."},
     {"board_not_found", "Leave the image out, or check rows, columns and light."},
     {"wand_not_found", "Leave the image out, or check that all balls are in it and bright."},
 }};

@@ -17,9 +17,9 @@ constexpr double kSuspect = 1.5, kWrong = 2.5;
 // Single image points are mislabelled or covered in every recording; more of them is a pattern.
 constexpr double kFewOutliers = 0.02;
 
-const std::array<const char*, 5> kGrave = {"systematic_residuals", "ball_size",
-                                           "implausible_distance", "implausible_lens",
-                                           "swapped_cameras"};
+const std::array<const char*, 6> kGrave = {
+    "systematic_residuals", "wrong_pairs",      "ball_size",
+    "implausible_distance", "implausible_lens", "swapped_cameras"};
 
 double Ratio(double rms_mm, double predicted_mm) {
   return predicted_mm > 0 ? rms_mm / predicted_mm : 0;

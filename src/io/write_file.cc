@@ -40,26 +40,58 @@ int WriteTo(const fs::path& file, int flags, std::string_view text, bool sync) {
   return error != 0 || closed ? error : errno;
 }
 
-}  // namespace
+// A text on the disk that still lacks its name; none where the target is a device.
+struct Part {
+  fs::path part, target;
+};
 
-void WriteFileAtomically(const fs::path& file, std::string_view text) {
+Part Prepare(const fs::path& file, std::string_view text) {
   std::error_code none;
   const fs::file_status status = fs::status(file, none);
   if (fs::is_directory(status)) Fail(file, EISDIR);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
     if (const int error = WriteTo(file, 0, text, false)) Fail(file, error);
-    return;
+    return {};
   }
-  const fs::path target = fs::exists(status) ? fs::canonical(file, none) : file;
-  fs::path part = target;
-  part += ".part" + std::to_string(getpid());
-  int error = WriteTo(part, O_CREAT | O_TRUNC, text, true);
+  Part part;
+  part.target = fs::exists(status) ? fs::canonical(file, none) : file;
+  part.part = part.target;
+  part.part += ".part" + std::to_string(getpid());
+  if (const int error = WriteTo(part.part, O_CREAT | O_TRUNC, text, true)) {
+    unlink(part.part.c_str());
+    Fail(file, error);
+  }
   // Overwriting keeps who may read the file.
-  if (error == 0 && fs::exists(status)) fs::permissions(part, status.permissions(), none);
-  if (error == 0 && std::rename(part.c_str(), target.c_str()) != 0) error = errno;
-  if (error == 0) return;
-  unlink(part.c_str());
-  Fail(file, error);
+  if (fs::exists(status)) fs::permissions(part.part, status.permissions(), none);
+  return part;
+}
+
+void Discard(const std::vector<Part>& parts) {
+  for (const Part& part : parts) {
+    if (!part.part.empty()) unlink(part.part.c_str());
+  }
+}
+
+}  // namespace
+
+void WriteFilesAtomically(const std::vector<TextFile>& files) {
+  std::vector<Part> parts;
+  try {
+    for (const TextFile& file : files) parts.push_back(Prepare(file.path, file.text));
+  } catch (...) {
+    Discard(parts);
+    throw;
+  }
+  for (const Part& part : parts) {
+    if (part.part.empty() || std::rename(part.part.c_str(), part.target.c_str()) == 0) continue;
+    const int error = errno;
+    Discard(parts);  // those that have their name already are no longer there to discard
+    Fail(part.target, error);
+  }
+}
+
+void WriteFileAtomically(const fs::path& file, std::string_view text) {
+  WriteFilesAtomically({{file, std::string(text)}});
 }
 
 }  // namespace stereomotion

@@ -56,6 +56,18 @@ class Rendered(Case):
         rows = (self.dir / "run/poses.csv").read_text().splitlines()
         self.assertTrue(all(row.split(",")[2] == "ok" for row in rows[1:]))
 
+    def test_wrong_coordinate_is_named(self):
+        """P05 is 100 mm off in the file: it is left out, and not silently."""
+        self.capture("calib_points")
+        frame = (self.folder / "frame.yaml").read_text().replace("[119.3481,", "[219.3481,")
+        for camera in ("cam0", "cam1"):
+            frame = frame.replace(f"images: {camera}", f"images: {self.folder}/{camera}")
+            frame = frame.replace(f"seeds: {camera}", f"seeds: {self.folder}/{camera}")
+        (self.dir / "wrong.yaml").write_text(frame)
+        result = self.run_program("calibrate", "wrong.yaml", "--output", "wrong_rig.yaml")
+        self.assertRegex(result.stderr, r"points_not_found: .*cam1/000001\.png: .* P05:")
+        self.assertIn("116 of 116", result.stdout)
+
     def test_tags(self):
         result = self.capture("calib_tags")
         used, seen = map(int, re.search(r"used +(\d+) of (\d+)", result.stdout).groups())

@@ -277,6 +277,68 @@ TEST(Calibrate, BentBoardIsNoticed) {
   EXPECT_NEAR(calibration->image_sigma_scale, 1, 0.1);
 }
 
+/// A board that moved between the two cameras' exposures, in one view: it would bend the whole rig.
+TEST(Calibrate, ViewOfAMovedBoardIsLeftOut) {
+  for (const int moved : {5, 0}) {
+    auto rng = testing::MakeTestRng(moved);
+    const CalibrationScene scene = testing::MakeBoardScene(15);
+    CalibrationDraw draw = testing::Draw(scene, rng);
+    for (auto& o : draw.observations) {
+      if (o.view == moved && o.camera == 1) o.pixel_px += Eigen::Vector2d(1, 1);
+    }
+    const auto calibration = Calibrate(draw.setup, draw.observations, BoardOptions());
+    ASSERT_TRUE(calibration) << calibration.error().text;
+    EXPECT_TRUE(Warns(*calibration, "contradicting_view"));
+    EXPECT_EQ(Warns(*calibration, "world_view"), moved == 0);
+    EXPECT_FALSE(calibration->view_used[moved]);
+    // χ² of the 18 intrinsics, which no choice of the world touches, is below 58 with 99.999 %.
+    const Eigen::VectorXd error = testing::RigError(calibration->rig, scene.truth);
+    std::vector<Eigen::Index> rows;
+    for (std::size_t i = 0; i < calibration->rig.covariance->parameters.size(); ++i) {
+      const bool intrinsic = calibration->rig.covariance->parameters[i].index < 9;
+      if (intrinsic) rows.push_back(static_cast<Eigen::Index>(i));
+    }
+    const Eigen::VectorXd part = error(rows);
+    const Eigen::MatrixXd covariance = calibration->rig.covariance->matrix(rows, rows);
+    EXPECT_LT(part.dot(covariance.ldlt().solve(part)), 58);
+  }
+}
+
+/// Paper that rises by 0.15 mm in the middle.
+TEST(Calibrate, SlightBowIsNoticed) {
+  auto rng = testing::MakeTestRng();
+  CalibrationScene scene = testing::MakeBoardScene(16);
+  CalibrationScene bowed = scene;
+  for (auto& point : bowed.setup.target.points) {
+    const double x = point.xyz_mm.x() / 225 - 1;
+    point.xyz_mm.z() = 0.15 * x * x;
+  }
+  CalibrationDraw draw = testing::Draw(bowed, rng);
+  draw.setup.target = scene.setup.target;
+  const auto calibration = Calibrate(draw.setup, draw.observations, BoardOptions());
+  ASSERT_TRUE(calibration);
+  EXPECT_TRUE(Warns(*calibration, "board_shape"));
+}
+
+TEST(Calibrate, RefusesNumbersThatCannotBeMeant) {
+  auto rng = testing::MakeTestRng();
+  CalibrationDraw draw = testing::Draw(testing::MakeBoardScene(4), rng);
+  draw.observations[3].pixel_px.x() = NAN;
+  EXPECT_THROW(Calibrate(draw.setup, draw.observations, {}), std::invalid_argument);
+}
+
+TEST(Calibrate, CoordinatesFarFromTheirOriginAreRefused) {
+  auto rng = testing::MakeTestRng();
+  CalibrationDraw draw = testing::Draw(testing::MakeControlPointScene(30, 0.2, 1), rng);
+  for (auto& point : draw.setup.target.points) point.xyz_mm += Eigen::Vector3d(4.5e8, 5.4e9, 0);
+  auto calibration = Calibrate(draw.setup, draw.observations, {});
+  ASSERT_FALSE(calibration);
+  EXPECT_EQ(calibration.error().name, "large_offset");
+  draw.setup.world = WorldPoints{0, 1, 2};
+  calibration = Calibrate(draw.setup, draw.observations, {});
+  EXPECT_TRUE(calibration) << calibration.error().text;
+}
+
 TEST(Calibrate, FlatBoardStaysFlat) {
   auto rng = testing::MakeTestRng();
   CalibrationDraw draw = testing::Draw(testing::MakeBoardScene(16), rng);

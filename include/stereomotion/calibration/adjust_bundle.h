@@ -100,9 +100,9 @@ struct BundleFailure {
 
 /// Adjusts cameras, views and points together to the observations: maximum likelihood by
 /// Levenberg–Marquardt, views (or points, where all views are fixed) eliminated by Schur's
-/// complement (Triggs et al. 2000, sec. 6). A used observation whose point cannot be projected from
-/// the start values throws std::invalid_argument, as does a prior of parameters that are not
-/// estimated or whose covariance is not positive definite.
+/// complement (Triggs et al. 2000, sec. 6). Where a used observation's point cannot be
+/// projected from the start values there is no convergence. A prior of parameters that are not
+/// estimated, or whose covariance is not positive definite, throws std::invalid_argument.
 Expected<BundleSolution, BundleFailure> AdjustBundle(const BundleProblem& problem,
                                                      const BundleOptions& options = {});
 
