@@ -54,28 +54,13 @@ std::string Date() {
   return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
 }
 
-const char* TargetName(TargetType type) {
-  switch (type) {
-    case TargetType::kControlPoints:
-      return "control_points";
-    case TargetType::kAprilTagGrid:
-      return "apriltag_grid";
-    case TargetType::kChessboard:
-      return "chessboard";
-    case TargetType::kCircleGrid:
-      return "circle_grid";
-    default:
-      return "wand";
-  }
-}
-
 CalibrationRecord MakeRecord(const Calibration& calibration, const CalibrateInputs& inputs,
                              const std::string& frame, const std::string& date) {
   CalibrationRecord record;
   record.date = date;
   record.program = std::string("stereomotion ") + kVersion;
   record.source = frame;
-  record.target = TargetName(inputs.file.setup.target.type);
+  record.target = TargetTypeName(inputs.file.setup.target.type);
   record.views = inputs.file.num_views;
   record.rms_px = calibration.rms_px;
   record.chi2_dof = calibration.chi2_dof;

@@ -66,6 +66,14 @@ IntrinsicsPlan PlanIntrinsics(const CalibrationSetup& setup,
     if (setup.target.type == TargetType::kControlPoints) {
       const int points = CountPoints(observations, static_cast<int>(c));
       limited = Limit(asked, points);
+      if (points < kDistortion) {
+        plan.notes.push_back(
+            {"few_points",
+             fmt::format("camera {}: {} points leave almost nothing over: a wrong one cannot be "
+                         "told, and about one such rig in ten errs several times more than it "
+                         "states; take {} points or more, better {}",
+                         camera.name, points, kDistortion, kAll)});
+      }
       if (limited.mask != asked || limited.one_focal_length) {
         plan.notes.push_back(
             {"intrinsics_reduced",

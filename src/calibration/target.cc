@@ -29,6 +29,21 @@ std::vector<TargetPoint> TagPoints(const Target& board, double sigma_mm) {
 
 }  // namespace
 
+const char* TargetTypeName(TargetType type) {
+  switch (type) {
+    case TargetType::kControlPoints:
+      return "control_points";
+    case TargetType::kAprilTagGrid:
+      return "apriltag_grid";
+    case TargetType::kChessboard:
+      return "chessboard";
+    case TargetType::kCircleGrid:
+      return "circle_grid";
+    default:
+      return "wand";
+  }
+}
+
 bool IsBoard(TargetType type) {
   return type == TargetType::kAprilTagGrid || type == TargetType::kChessboard ||
          type == TargetType::kCircleGrid;

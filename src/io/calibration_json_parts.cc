@@ -26,26 +26,11 @@ Json SpreadJson(const std::optional<Spread>& spread) {
   return {{"median", spread->median}, {"largest", spread->largest}};
 }
 
-const char* TypeName(TargetType type) {
-  switch (type) {
-    case TargetType::kControlPoints:
-      return "control_points";
-    case TargetType::kAprilTagGrid:
-      return "apriltag_grid";
-    case TargetType::kChessboard:
-      return "chessboard";
-    case TargetType::kCircleGrid:
-      return "circle_grid";
-    default:
-      return "wand";
-  }
-}
-
 }  // namespace
 
 Json TargetJson(const ReportData& data) {
   const Target& target = data.setup.target;
-  return {{"type", TypeName(target.type)},
+  return {{"type", TargetTypeName(target.type)},
           {"points", target.points.size()},
           {"world_points", data.setup.world_points.size()}};
 }

@@ -9,7 +9,7 @@ namespace {
 
 // In the order in which docs/formats.md lists them.
 using Pair = std::pair<const char*, const char*>;
-constexpr std::array<Pair, 25> kAdvice = {{
+constexpr std::array<Pair, 26> kAdvice = {{
     {"outliers",
      "Look at these image points: covered, exchanged ids, reflections? If the ids are "
      "right and many points of one view are listed, take that view again."},
@@ -54,6 +54,7 @@ constexpr std::array<Pair, 25> kAdvice = {{
     {"points_not_found", "Look there: a covered ball, or a wrong coordinate or id."},
     {"wrong_pairs", "Make sure that image n of each camera shows the same moment."},
     {"contradicting_view", "Take that view again, or leave it out."},
+    {"few_points", "Survey at least eight balls, better 24, and keep some as check points."},
     {"world_view", "Take the view whose board shall be the world as the first one."},
     {"board_not_found", "Leave the image out, or check rows, columns and light."},
     {"wand_not_found", "Leave the image out, or check that all balls are in it and bright."},

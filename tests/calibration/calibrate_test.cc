@@ -225,6 +225,14 @@ TEST(Calibrate, FewPointsReduceTheIntrinsics) {
   EXPECT_TRUE(Warns(*calibration, "intrinsics_reduced"));
 }
 
+TEST(Calibrate, SixPointsAreWarnedAbout) {
+  auto rng = testing::MakeTestRng();
+  CalibrationDraw draw = testing::Draw(testing::MakeControlPointScene(6, 0.02, 1), rng);
+  const auto calibration = Calibrate(draw.setup, draw.observations, {});
+  ASSERT_TRUE(calibration) << calibration.error().text;
+  EXPECT_TRUE(Warns(*calibration, "few_points"));
+}
+
 TEST(Calibrate, FewAndSimilarViews) {
   auto rng = testing::MakeTestRng();
   CalibrationScene scene = testing::MakeBoardScene(4);

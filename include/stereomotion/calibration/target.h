@@ -9,6 +9,9 @@ namespace stereomotion {
 /// Names the kinds of calibration targets (docs/formats.md, frame.yaml).
 enum class TargetType { kControlPoints, kAprilTagGrid, kChessboard, kCircleGrid, kWand };
 
+/// Spells a type as frame.yaml does: "control_points", ….
+const char* TargetTypeName(TargetType type);
+
 /// Holds one point of a target, in the target's own frame.
 struct TargetPoint {
   std::string id;
