@@ -184,6 +184,8 @@ std::optional<CalibrationNote> RefuseMisfit(const CalibrationSetup& setup, const
     extent_mm =
         std::max(extent_mm, (point.surveyed_mm - fit.solution.points[0].surveyed_mm).norm());
   }
+  // Surveyed points hold the measuring volume together whatever the focal length is.
+  if (setup.target.type == TargetType::kControlPoints) return std::nullopt;
   if (!IsBoard(setup.target.type) || off_mm < kWorstBoard * extent_mm) return RefuseLens(fit);
   return CalibrationNote{
       "wrong_board",
