@@ -118,7 +118,6 @@ Expected<BundleSolution, BundleFailure> EstimateVariances(const FitOptions& opti
     fit.survey_sigma_scale *= survey;
     solution = Solve(std::numeric_limits<double>::infinity(), true, fit.problem);
   }
-  fit.image_scale_is_stated = !image_refuted;
   return solution;
 }
 

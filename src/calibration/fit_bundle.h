@@ -18,7 +18,6 @@ struct FittedBundle {
   BundleSolution solution;
   double image_sigma_scale = 1;
   double survey_sigma_scale = 1;
-  bool image_scale_is_stated = true;  ///< false: the scale was estimated from the residuals
 };
 
 /// Adjusts a bundle robustly: Huber's weights against a robust scale first, then observations

@@ -15,13 +15,6 @@ double MedianOf(const std::vector<LevelNoise>& levels, double LevelNoise::*membe
 
 }  // namespace
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 VarianceLine MeasureVariance(const std::vector<LevelNoise>& levels) {
   const double black_dn = MedianOf(levels, &LevelNoise::black_dn);
   const double white_dn = MedianOf(levels, &LevelNoise::white_dn);

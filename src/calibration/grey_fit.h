@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "median.h"
 #include "stereomotion/core/image.h"
 
 namespace stereomotion {
@@ -30,9 +31,6 @@ struct LevelNoise {
 
 /// Draws the line through the usual variance of black and that of white (medians).
 VarianceLine MeasureVariance(const std::vector<LevelNoise>& levels);
-
-/// Median; 0 of nothing.
-double Median(std::vector<double> values);
 
 /// Factor on the covariance of a fit whose χ² per degree of freedom is more than chance: where the
 /// print or the light is not as the model has it, a point counts for less.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "median.h"
 #include "stereomotion/detection/measure_ball.h"
 
 namespace stereomotion {
@@ -33,12 +34,6 @@ bool Explained(const BallObservation& ball, const SensorNoise& noise) {
   const double excess = std::max(ball.chi2_dof - 1, 0.0) + kChi2_sigma * std::sqrt(2 / pixels);
   const double noise_dn = std::sqrt(noise.VarianceDn2(ball.background_dn));
   return std::sqrt(excess) * noise_dn < kLargestMisfit * ball.amplitude_dn;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 double DepthOf(const LabelCamera& camera, const Eigen::Vector3d& p_mm) {

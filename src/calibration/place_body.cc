@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "median.h"
 #include "stereomotion/calibration/intersect_rays.h"
 
 namespace stereomotion {
@@ -13,12 +14,6 @@ namespace {
 // A frame whose misfit is this many times the median: a ball was taken for another.
 constexpr double kFarFactor = 5;
 constexpr double kNearMm = 0.01;  // as good as exact, whatever the median
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 double Spread(const Eigen::Matrix3Xd& points) {
   return (points.colwise() - points.rowwise().mean()).norm();

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "stereomotion/calibration/find_control_points.h"
-#include "stereomotion/capture/read_image.h"
 #include "stereomotion/detection/estimate_noise.h"
+#include "tests/support/number_table.h"
 #include "tests/support/statistics.h"
 #include "tests/support/test_rng.h"
 
@@ -17,33 +17,13 @@ namespace stereomotion {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ReadGrey;
+using testing::ReadNumbers;
 using testing::Uniform;
 
 fs::path SharedData() {
   const char* given = std::getenv("STEREOMOTION_SHARED_DATA");
   return given != nullptr ? fs::path(given) : fs::path(STEREOMOTION_SOURCE_DIR) / "../shared/data";
-}
-
-/// Reads a table of numbers; commas count as blanks, lines that begin otherwise are skipped.
-std::vector<std::vector<double>> ReadNumbers(const fs::path& file) {
-  std::ifstream stream(file);
-  std::vector<std::vector<double>> rows;
-  for (std::string line; std::getline(stream, line);) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream words(line);
-    std::vector<double> row;
-    for (double value = 0; words >> value;) row.push_back(value);
-    if (!row.empty()) rows.push_back(row);
-  }
-  return rows;
-}
-
-Image ReadGrey(const fs::path& file) {
-  std::vector<std::uint8_t> bytes;
-  Image image;
-  EXPECT_EQ(ReadBytes(file, bytes), "");
-  EXPECT_EQ(DecodeImage(bytes, image), "");
-  return image;
 }
 
 int PointAt(const Target& target, const Eigen::Vector3d& p_mm) {
