@@ -26,6 +26,9 @@ struct BallObservation {
   double background_dn = 0;
   double chi2_dof = 0;          ///< χ² per degree of freedom of the fit
   double visible_fraction = 1;  ///< share of the outline's area that is bright
+  /// Straight path of the centre over the exposure [px], its sign open; zero where no smear was
+  /// evident. `center_px` is the mean over the exposure.
+  Eigen::Vector2d smear_px = Eigen::Vector2d::Zero();
   BlobStatus status = BlobStatus::kOk;
 
   [[nodiscard]] double diameter_px() const { return semi_major_px + semi_minor_px; }

@@ -4,13 +4,22 @@
 #include <vector>
 
 #include "stereomotion/core/image.h"
+#include "stereomotion/core/image_mask.h"
 #include "stereomotion/core/sensor_noise.h"
 #include "stereomotion/detection/ball_observation.h"
 
 namespace stereomotion {
 
-/// Sets what the detector takes for a ball.
+/// Names how a ball's centre is measured (docs/accuracy.md compares them).
+enum class DetectorMethod {
+  kMaximumLikelihood,  ///< fit of the ball's image under the sensor's noise: at the physical limit
+  kWavelet,            ///< ellipse through subpixel edge points of the dyadic wavelet transform
+  kCentroid            ///< intensity-weighted centroid: the fastest
+};
+
+/// Sets what the detector takes for a ball, and how it measures it.
 struct DetectionOptions {
+  DetectorMethod method = DetectorMethod::kMaximumLikelihood;
   double min_diameter_px = 3;   ///< smaller blobs are noise or glints
   double max_diameter_px = 64;  ///< larger blobs are lamps or walls
   double threshold_sigma = 6;   ///< a ball's pixels rise this far over the local background
@@ -22,11 +31,19 @@ struct DetectionOptions {
   int max_balls = 200;
 };
 
+/// Says where in an image a ball is looked for, all inclusive, and what it looked like before.
+struct SearchWindow {
+  int u_min = 0, u_max = 0, v_min = 0, v_max = 0;
+  BallObservation expected;
+};
+
 /// Detects balls in images of one camera; keeps its work memory between images, so that nothing is
 /// allocated once it is warm. One object a thread.
 class BallDetector {
  public:
-  explicit BallDetector(const SensorNoise& noise, const DetectionOptions& options = {});
+  /// Pixels of `mask` (static false reflections) are never taken for balls.
+  explicit BallDetector(const SensorNoise& noise, const DetectionOptions& options = {},
+                        ImageMask mask = {});
   ~BallDetector();
   BallDetector(BallDetector&&) noexcept;
   BallDetector& operator=(BallDetector&&) noexcept;
@@ -38,6 +55,12 @@ class BallDetector {
   /// background under `noise` (saturated and zero pixels are censored). The result depends on
   /// nothing but the image, the noise and the options.
   void Detect(const ImageView& image, std::vector<BallObservation>& balls);
+
+  /// Finds balls in parts of the image only, against the background map of the last whole search;
+  /// searches the whole image where there was none yet. A ball that lies in two windows is given
+  /// once. The expected balls start the fits.
+  void Detect(const ImageView& image, const std::vector<SearchWindow>& windows,
+              std::vector<BallObservation>& balls);
 
  private:
   struct Workspace;
