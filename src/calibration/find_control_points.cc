@@ -14,9 +14,6 @@
 namespace stereomotion {
 namespace {
 
-/// Lower than the engine's: labels tell a dim ball from clutter afterwards, and a seed's ball must
-/// not be missed.
-constexpr double kThreshold_sigma = 4;
 /// A glint outshines its ball and leaves only itself of it, a pixel or two.
 constexpr double kSmallestBlob_px = 1.5;
 constexpr int kMostBlobs = 3000;
@@ -84,7 +81,6 @@ Expected<ControlPointView, LabelProblem> FindControlPoints(const ImageView& imag
                                                            const std::vector<Seed>& seeds) {
   CheckSeeds(target, seeds);
   DetectionOptions options;
-  options.threshold_sigma = kThreshold_sigma;
   options.min_diameter_px = kSmallestBlob_px;
   options.max_balls = kMostBlobs;
   const auto detections = DetectBalls(image, noise, options);

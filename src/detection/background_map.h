@@ -16,19 +16,21 @@ struct BackgroundMap {
   int rows = 0;
   std::vector<float> level_dn;          ///< grey value of the background
   std::vector<float> noise_dn;          ///< standard deviation of a pixel of it, texture included
-  std::vector<float> raw_level_dn;      ///< of each cell by itself
-  std::vector<float> raw_variance_dn2;  ///< of each cell by itself, slow changes of light left out
+  std::vector<float> raw_level_dn;      ///< of each cell's darker stretch by itself
+  std::vector<float> raw_variance_dn2;  ///< of the same stretch, slow changes of light left out
   std::vector<float> work;              ///< reused
 
   [[nodiscard]] int CellAt(int u, int v) const { return v / cell_px * columns + u / cell_px; }
+  /// Interpolates the level between the cells' middles.
+  [[nodiscard]] float LevelAt(float u, float v) const;
 };
 
 /// Estimates the background map from two rows of every cell.
 ///
-/// A cell's raw value is the darker of its two sampled stretches; then the median of five cells is
-/// taken along rows and along columns, so that neither balls up to two cells wide (`max_ball_px`
-/// sets the cell) nor dark things before a bright wall count as background, while uneven light
-/// does.
+/// A cell's value is the mean of its two sampled stretches, or the darker one where they differ by
+/// more than noise; then the median of five cells is taken along rows and along columns, so that
+/// neither balls up to two cells wide (`max_ball_px` sets the cell) nor dark things before a bright
+/// wall count as background, while uneven light does.
 void EstimateBackground(const ImageView& image, const SensorNoise& noise, double max_ball_px,
                         BackgroundMap& map);
 

@@ -20,6 +20,9 @@ constexpr int kPixelsPerCell = 20;
 constexpr double kDarkest_sigma = 1.0;
 /// Below this variance [DN²] rounding does not simply add 1/12.
 constexpr double kCoarse_dn2 = 0.6;
+/// With so much variance before rounding [DN²] 32 pixels do not come out all alike (p < 1e-3): a
+/// cell that does was painted, not measured.
+constexpr double kNeverConstant_dn2 = 0.15;
 /// So far above 0 nothing of the noise is cut off.
 constexpr double kUnclipped_sigma = 4;
 /// A cell's level is a mean of 32 whole numbers.
@@ -83,6 +86,7 @@ void AddBackgroundVariance(const BackgroundMap& map, const SensorNoise& noise, V
   std::map<std::int64_t, Rounding> rounding;  // many cells share a level
   for (std::size_t i = 0; i < map.level_dn.size(); ++i) {
     const double expected = noise.VarianceDn2(map.raw_level_dn[i]);
+    if (map.raw_variance_dn2[i] == 0 && expected - kSheppard_dn2 > kNeverConstant_dn2) continue;
     const double sigma = std::sqrt(expected);
     const double raw_alpha = map.raw_level_dn[i] / sigma;
     double alpha = raw_alpha;

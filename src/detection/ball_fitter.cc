@@ -4,90 +4,61 @@
 #include <cmath>
 
 #include "normal_distribution.h"
+#include "start_ball.h"
 
 namespace stereomotion {
 namespace {
 
-/// Background kept around the blob's half-height box: the blur's tail (3 σ of a sharp lens) and a
-/// border wide enough that its level and slopes cost the centre less than 2 % of its precision.
-constexpr int kMargin_px = 6;
-/// A blob above threshold has its tail below it; a half-height cut lies deeper inside.
-constexpr int kThresholdTail_px = 1;
-constexpr int kHalfHeightTail_px = 3;
+using P = BallModel;
 
-BallModel InitialModel(const Blob& blob, const Eigen::Vector2d& origin_px) {
-  using P = BallModel;
-  BallModel model;
-  model.values[P::kU] = blob.sum_u / blob.area_px - origin_px.x();
-  model.values[P::kV] = blob.sum_v / blob.area_px - origin_px.y();
-  model.values[P::kRadius] = std::max(std::sqrt(blob.area_px / kPi), 0.8);
-  model.values[P::kBlur] = 0.8;
-  model.values[P::kAmplitude] = 0.95 * (blob.peak_dn - blob.background_dn);
-  model.values[P::kShading] = 0.1;
-  model.values[P::kLevel] = blob.background_dn;
-  return model;
+/// Blur's tail around the half-height box that is fitted pixel by pixel: five standard deviations
+/// of a usual lens.
+constexpr double kUsualTail_px = 3.5;
+/// Where the ball's light has fallen to 1e-5 of its amplitude.
+constexpr double kTail_blurs = 4.3;
+/// Background kept beyond the tail, growing with the ball: its level and slopes then cost the
+/// centre 1–2 % of its precision.
+constexpr double kNarrowestRing_px = 5.5;
+constexpr double kWidestRing_px = 10;
+constexpr double kRing_radii = 0.8;
+constexpr double kWidestTail_px = 20;
+
+double RingOf(const Blob& blob) {
+  return std::clamp(kRing_radii * std::sqrt(blob.area_px / kPi), kNarrowestRing_px, kWidestRing_px);
+}
+
+/// Finds how far around the part cut out the fitted ball's light reaches.
+double TailOf(const BallFit& fit, const Blob& blob, const BallWindow& window) {
+  const auto& p = fit.model.values;
+  const double stretch = std::hypot(p[P::kStretch1], p[P::kStretch2]);
+  const double radius = p[P::kRadius] / std::sqrt(1 - 2 * stretch);
+  const Eigen::Vector2d middle_px(0.5 * (blob.u_min + blob.u_max), 0.5 * (blob.v_min + blob.v_max));
+  const Eigen::Vector2d reach_px = (window.origin_px() + p.head<2>() - middle_px).cwiseAbs() +
+                                   0.5 * fit.model.smear_px.cwiseAbs();
+  return (reach_px - window.half_px()).maxCoeff() + radius + kTail_blurs * p[P::kBlur];
 }
 
 }  // namespace
 
-void BallFitter::MaskRuns(const RunList& list, int own_label, int margin_px) {
-  const int width = u_max_ - u_min_ + 1;
-  const int rows = static_cast<int>(list.row_begin.size()) - 1;
-  const int first = list.row_begin[static_cast<std::size_t>(std::max(v_min_ - margin_px, 0))];
-  const int last = list.row_begin[static_cast<std::size_t>(std::min(v_max_ + margin_px + 1, rows))];
-  for (int i = first; i < last; ++i) {
-    const Run& run = list.runs[static_cast<std::size_t>(i)];
-    if (run.label == own_label) continue;
-    const int u_begin = std::max(run.u_begin - margin_px, u_min_) - u_min_;
-    const int u_end = std::min(run.u_end + margin_px, u_max_ + 1) - u_min_;
-    if (u_begin >= u_end) continue;
-    const int v_begin = std::max(run.v - margin_px, v_min_) - v_min_;
-    const int v_end = std::min(run.v + margin_px, v_max_) - v_min_;
-    for (int v = v_begin; v <= v_end; ++v) {
-      std::fill(masked_.begin() + v * width + u_begin, masked_.begin() + v * width + u_end, 1);
-    }
-  }
-}
-
-void BallFitter::CutPatch(const ImageView& image, const Segmenter& segments, const Blob& blob) {
-  u_min_ = std::max(blob.u_min - kMargin_px, 0);
-  v_min_ = std::max(blob.v_min - kMargin_px, 0);
-  u_max_ = std::min(blob.u_max + kMargin_px, image.width_px - 1);
-  v_max_ = std::min(blob.v_max + kMargin_px, image.height_px - 1);
-  origin_px_ = {(u_min_ + u_max_) / 2, (v_min_ + v_max_) / 2};
-  const int width = u_max_ - u_min_ + 1;
-  const int capacity = width * (v_max_ - v_min_ + 1);
-  masked_.assign(static_cast<std::size_t>(capacity), 0);
-  MaskRuns(segments.above_threshold(), blob.parent, kThresholdTail_px);
-  MaskRuns(segments.half_height(), blob.label, kHalfHeightTail_px);
-  patch_.Resize(capacity);
-  // The window is the ellipse around the blob; its corners would tell little and cost a fifth.
-  const double mid_u = 0.5 * (blob.u_min + blob.u_max);
-  const double mid_v = 0.5 * (blob.v_min + blob.v_max);
-  const double reach_u = 0.5 * (blob.u_max - blob.u_min + 1) + kMargin_px;
-  const double reach_v = 0.5 * (blob.v_max - blob.v_min + 1) + kMargin_px;
-  int n = 0;
-  for (int v = v_min_; v <= v_max_; ++v) {
-    const double y = (v - mid_v) / reach_v;
-    const double half_width = reach_u * std::sqrt(std::max(1 - y * y, 0.0));
-    const int u_begin = std::max(u_min_, static_cast<int>(std::ceil(mid_u - half_width)));
-    const int u_end = std::min(u_max_, static_cast<int>(std::floor(mid_u + half_width)));
-    for (int u = u_begin; u <= u_end; ++u) {
-      if (masked_[static_cast<std::size_t>((v - v_min_) * width + u - u_min_)] != 0) continue;
-      patch_.u[n] = static_cast<float>(u - origin_px_.x());
-      patch_.v[n] = static_cast<float>(v - origin_px_.y());
-      patch_.grey[n] = static_cast<float>(image.At(u, v));
-      ++n;
-    }
-  }
-  patch_.size = n;
-}
-
 const BallFit& BallFitter::Fit(const ImageView& image, const Segmenter& segments, const Blob& blob,
-                               const SensorNoise& noise) {
-  CutPatch(image, segments, blob);
-  fit_ = FitBall(noise, InitialModel(blob, origin_px_), patch_);
+                               const SensorNoise& noise, const BallObservation* expected) {
+  const double ring_px = RingOf(blob);
+  window_.Cut(image, segments, blob, noise, {kUsualTail_px, ring_px}, patch_);
+  fit_ = FitBall(noise, StartBall(patch_, blob, window_.origin_px(), expected), patch_);
+  if (!fit_.converged) return fit_;
+  const double tail_px = std::min(TailOf(fit_, blob, window_), kWidestTail_px);
+  if (tail_px <= kUsualTail_px) return fit_;
+  const int iterations = fit_.iterations;
+  window_.Cut(image, segments, blob, noise, {tail_px, ring_px}, patch_);
+  fit_ = FitBall(noise, fit_.model, patch_);
+  fit_.iterations += iterations;
   return fit_;
+}
+
+BallPatch& BallFitter::CutWhole(const ImageView& image, const Segmenter& segments, const Blob& blob,
+                                const SensorNoise& noise) {
+  window_.Cut(image, segments, blob, noise, {kUsualTail_px + RingOf(blob), 0}, patch_);
+  return patch_;
 }
 
 }  // namespace stereomotion

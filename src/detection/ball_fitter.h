@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "ball_model.h"
+#include "ball_window.h"
 #include "fit_ball.h"
 #include "segment_blobs.h"
 #include "stereomotion/core/image.h"
@@ -16,20 +17,21 @@ namespace stereomotion {
 class BallFitter {
  public:
   /// Cuts the blob's surroundings out of the image, other blobs left out, and fits it.
-  /// The fit's model is relative to `origin()`.
+  /// The fit's model is relative to `origin()`; `expected`, where known, starts the search.
   const BallFit& Fit(const ImageView& image, const Segmenter& segments, const Blob& blob,
-                     const SensorNoise& noise);
+                     const SensorNoise& noise, const BallObservation* expected = nullptr);
 
-  [[nodiscard]] Eigen::Vector2d origin() const { return origin_px_; }
+  /// Cuts the blob's window anew with all its pixels as columns, none of them in the ring, for a
+  /// caller that looks at the background or leaves pixels out before a fit of its own.
+  BallPatch& CutWhole(const ImageView& image, const Segmenter& segments, const Blob& blob,
+                      const SensorNoise& noise);
+
+  [[nodiscard]] Eigen::Vector2d origin() const { return window_.origin_px(); }
   [[nodiscard]] const BallPatch& patch() const { return patch_; }
+  [[nodiscard]] BallPatch& patch() { return patch_; }
 
  private:
-  void CutPatch(const ImageView& image, const Segmenter& segments, const Blob& blob);
-  void MaskRuns(const RunList& list, int own_label, int margin_px);
-
-  Eigen::Vector2d origin_px_ = Eigen::Vector2d::Zero();
-  int u_min_ = 0, u_max_ = 0, v_min_ = 0, v_max_ = 0;  ///< window, inclusive
-  std::vector<unsigned char> masked_;
+  BallWindow window_;
   BallPatch patch_;
   BallFit fit_;
 };

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ball_pixel.h"
 #include "edge_table.h"
 #include "multiversion.h"
 
 namespace stereomotion {
 namespace {
-
-/// Keeps the direction defined at the very centre.
-constexpr float kSmallestDistance2_px2 = 1e-6F;
 
 /// Points at the columns of a patch, for the loops that the compiler vectorises.
 struct Columns {
@@ -24,58 +22,32 @@ struct Columns {
 };
 
 STEREOMOTION_MULTIVERSION
-void EvaluateColumns(const Eigen::Matrix<float, BallModel::kNumParameters, 1>& p,
+void EvaluateColumns(const BallOutline& ball, const Eigen::Matrix<float, 5, 1>& place_and_light,
                      const EdgeTable& table, const Columns& c) {
   using P = BallModel;
-  const float center_u = p[P::kU];
-  const float center_v = p[P::kV];
-  const float m_uu = 1.0F - 2.0F * p[P::kStretch1];
-  const float m_vv = 1.0F + 2.0F * p[P::kStretch1];
-  const float m_uv = -2.0F * p[P::kStretch2];
-  const float radius = p[P::kRadius];
-  const float blur = p[P::kBlur];
-  const float epsilon = blur / radius;
-  const float q = p[P::kShading];
-  const float amplitude = p[P::kAmplitude];
-  const float level = p[P::kLevel];
-  const float slope_u = p[P::kSlopeU];
-  const float slope_v = p[P::kSlopeV];
+  const float center_u = place_and_light[0];
+  const float center_v = place_and_light[1];
+  const float level = place_and_light[2];
+  const float slope_u = place_and_light[3];
+  const float slope_v = place_and_light[4];
   const std::ptrdiff_t stride = c.stride;
   float* __restrict j = c.jacobian;
 #pragma omp simd
   for (int i = 0; i < c.size; ++i) {
-    const float x = c.u[i] - center_u;
-    const float y = c.v[i] - center_v;
-    const float r2 = x * x + y * y + kSmallestDistance2_px2;
-    const float s2 = m_uu * x * x + m_vv * y * y + 2.0F * m_uv * x * y + kSmallestDistance2_px2;
-    const float s = std::sqrt(s2);
-    // (R − s) is the distance in the stretched plane; r/s turns it back into pixels.
-    const float r = std::sqrt(r2);
-    const float scale = r / (s * blur);
-    const float z = scale * (radius - s);
-    const EdgeValue edge = table.At(z);
-    const float inside = z > 0.0F ? z : 0.0F;
-    const float cosine = std::sqrt(epsilon * (2.0F * edge.height - epsilon * inside * inside));
-    const float shade = 1.0F - q + q * cosine;
-    const float d_cosine_dz = epsilon * (edge.height_slope - epsilon * inside) / cosine;
-    const float d_cosine_de = (edge.height - epsilon * inside * inside) / cosine;
-    const float dz = amplitude * (edge.slope * shade + edge.coverage * q * d_cosine_dz);
-    const float de = amplitude * edge.coverage * q * d_cosine_de;
-    const float per_s = dz * scale * radius / s2;
-    const float per_r = dz * (radius - s) / (s * blur * r);
-    j[P::kU * stride + i] = per_s * (m_uu * x + m_uv * y) - per_r * x;
-    j[P::kV * stride + i] = per_s * (m_uv * x + m_vv * y) - per_r * y;
-    j[P::kRadius * stride + i] = dz * scale - de * epsilon / radius;
-    j[P::kStretch1 * stride + i] = per_s * (x * x - y * y);
-    j[P::kStretch2 * stride + i] = per_s * 2.0F * x * y;
-    j[P::kBlur * stride + i] = -dz * z / blur + de / radius;
-    j[P::kAmplitude * stride + i] = edge.coverage * shade;
-    j[P::kShading * stride + i] = amplitude * edge.coverage * (cosine - 1.0F);
+    const BallPixel pixel = EvaluateBallPixel(ball, table, c.u[i] - center_u, c.v[i] - center_v);
+    j[P::kU * stride + i] = pixel.by_u;
+    j[P::kV * stride + i] = pixel.by_v;
+    j[P::kRadius * stride + i] = pixel.by_radius;
+    j[P::kStretch1 * stride + i] = pixel.by_stretch1;
+    j[P::kStretch2 * stride + i] = pixel.by_stretch2;
+    j[P::kBlur * stride + i] = pixel.by_blur;
+    j[P::kAmplitude * stride + i] = pixel.by_amplitude;
+    j[P::kShading * stride + i] = pixel.by_shading;
     j[P::kLevel * stride + i] = 1.0F;
     j[P::kSlopeU * stride + i] = c.u[i];
     j[P::kSlopeV * stride + i] = c.v[i];
-    c.depth[i] = z;
-    c.model[i] = amplitude * edge.coverage * shade + level + slope_u * c.u[i] + slope_v * c.v[i];
+    c.depth[i] = pixel.depth;
+    c.model[i] = pixel.grey + level + slope_u * c.u[i] + slope_v * c.v[i];
   }
 }
 
@@ -98,16 +70,36 @@ void WeighColumns(const SensorNoise& noise, int size, const float* __restrict gr
 
 }  // namespace
 
+void BackgroundSums::Add(double u_px, double v_px, double grey_dn) {
+  n += 1;
+  u += u_px;
+  v += v_px;
+  uu += u_px * u_px;
+  uv += u_px * v_px;
+  vv += v_px * v_px;
+  grey += grey_dn;
+  u_grey += u_px * grey_dn;
+  v_grey += v_px * grey_dn;
+  grey2 += grey_dn * grey_dn;
+}
+
 void BallPatch::Resize(int capacity) {
   size = capacity;
-  if (capacity <= u.size()) return;
+  ring = {};
+  order.Forget();
+  const int whole = capacity + kLanes;
+  if (whole <= u.size()) return;
   for (Eigen::ArrayXf* column : {&u, &v, &grey, &model, &depth, &weight, &work})
-    column->resize(capacity);
+    column->resize(whole);
   jacobian.resize(capacity, BallModel::kNumParameters);
 }
 
 void EvaluateBallModel(const BallModel& ball, BallPatch& patch) {
-  EvaluateColumns(ball.values.cast<float>(), EdgeTable::Get(),
+  using P = BallModel;
+  const auto& p = ball.values;
+  const Eigen::Matrix<double, 5, 1> place_and_light(
+      {p[P::kU], p[P::kV], p[P::kLevel], p[P::kSlopeU], p[P::kSlopeV]});
+  EvaluateColumns(BallOutline(p), place_and_light.cast<float>(), EdgeTable::Get(),
                   {patch.size, patch.jacobian.rows(), patch.u.data(), patch.v.data(),
                    patch.model.data(), patch.depth.data(), patch.jacobian.data()});
 }

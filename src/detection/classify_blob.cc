@@ -13,8 +13,17 @@ namespace {
 constexpr double kPixelVariance_px2 = 1.0 / 12.0;
 /// A blob thinner than this, by its moments, is a wire or a streak.
 constexpr double kThinnestAxisRatio = 0.25;
+/// A longer smear is rather a wire.
+constexpr double kLongestSmear_diameters = 2.5;
+/// A ball of 6 px at 10 dB, the faintest to be found, has 0.05; beyond this the errors are no
+/// longer Gaussian, and most things that are so uncertain are no balls.
+constexpr double kLargestSigma_diameters = 0.1;
+/// A fit smaller than so much of the smallest ball is a speck, as `MayBeBall` judges blobs.
+constexpr double kSmallestFit = 0.7;
 /// Less than this share of a ball bright: something stands before it.
 constexpr double kSmallestVisibleFraction = 0.9;
+/// … by so many standard deviations: the binomial's tail is longer than the normal one's.
+constexpr double kVisible_sigma = 4;
 /// Excess of the residuals over the noise, in units of the background's noise, against the
 /// amplitude, that no real lens explains. (At the limb, where a misfit sits, the noise is about
 /// twice the background's.)
@@ -39,6 +48,19 @@ Moments MomentsOf(const Blob& blob) {
           2 * std::sqrt(std::max(eigen.eigenvalues()[0], 0.0)), std::atan2(axis.y(), axis.x())};
 }
 
+/// Mean grey value of a square of pixels; noise hides what a single one shows of a weak blob.
+double GreyAt(const ImageView& image, int u, int v, int reach_px) {
+  double sum = 0;
+  int count = 0;
+  for (int y = std::max(v - reach_px, 0); y <= std::min(v + reach_px, image.height_px - 1); ++y) {
+    for (int x = std::max(u - reach_px, 0); x <= std::min(u + reach_px, image.width_px - 1); ++x) {
+      sum += image.At(x, y);
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
 /// Tells whether it is dark around the blob. A neighbour may fill a quarter of the ring.
 bool IsIsland(const ImageView& image, const Blob& blob, const Moments& moments) {
   constexpr int kSamples = 16;
@@ -54,7 +76,7 @@ bool IsIsland(const ImageView& image, const Blob& blob, const Moments& moments) 
     const auto u = static_cast<int>(std::lround(moments.center_px.x() + cosine * x - sine * y));
     const auto v = static_cast<int>(std::lround(moments.center_px.y() + sine * x + cosine * y));
     const bool inside = u >= 0 && v >= 0 && u < image.width_px && v < image.height_px;
-    if (inside && image.At(u, v) > half_dn) ++bright;
+    if (inside && GreyAt(image, u, v, blob.is_weak ? 1 : 0) > half_dn) ++bright;
   }
   return bright <= kSamples / 4;
 }
@@ -80,6 +102,7 @@ void CopyFit(const BallFit& fit, const Eigen::Vector2d& origin_px, BallObservati
   ball.amplitude_dn = p[P::kAmplitude];
   ball.background_dn = p[P::kLevel];
   ball.chi2_dof = fit.chi2 / fit.dof;
+  ball.smear_px = fit.model.smear_px;
 }
 
 void CopyMoments(const Blob& blob, BallObservation& ball) {
@@ -94,10 +117,9 @@ void CopyMoments(const Blob& blob, BallObservation& ball) {
 
 bool TouchesBorder(const ImageView& image, const BallObservation& ball) {
   // One pixel more than the outline: the blurred limb must lie inside as well.
-  const double reach = ball.semi_major_px + 1;
-  return ball.center_px.x() < reach || ball.center_px.y() < reach ||
-         ball.center_px.x() > image.width_px - 1 - reach ||
-         ball.center_px.y() > image.height_px - 1 - reach;
+  const Eigen::Array2d reach = ball.semi_major_px + 1 + 0.5 * ball.smear_px.array().abs();
+  const Eigen::Array2d last(image.width_px - 1, image.height_px - 1);
+  return (ball.center_px.array() < reach).any() || (ball.center_px.array() > last - reach).any();
 }
 
 /// Largest χ²/dof that noise alone reaches with probability 10^-exponent (Wilson & Hilferty 1931).
@@ -107,21 +129,39 @@ double LargestChi2Dof(int dof, double exponent) {
   return std::pow(1 - h + z * std::sqrt(h), 3);
 }
 
+/// Height of the ball's image: a smear longer than the ball spreads its light.
+double BrightnessOf(const BallObservation& ball) {
+  const double length_px = std::max(ball.smear_px.norm(), ball.diameter_px());
+  return ball.amplitude_dn * ball.diameter_px() / length_px;
+}
+
+/// Tells whether the fit found a thing of a ball's size at a place that it knows.
+bool IsDefinite(const BallObservation& ball, const DetectionOptions& options) {
+  const double sigma_px = std::sqrt(ball.covariance_px2.trace() / 2);
+  return sigma_px < kLargestSigma_diameters * ball.diameter_px() &&
+         ball.diameter_px() > kSmallestFit * options.min_diameter_px;
+}
+
 BlobStatus Judge(const ImageView& image, const Blob& blob, const BallFit& fit,
                  const BallObservation& ball, const DetectionOptions& options) {
   if (TouchesBorder(image, ball)) return BlobStatus::kClipped;
   if (fit.dof <= 0) return BlobStatus::kSaturated;
-  if (!fit.converged) return BlobStatus::kPoorFit;
+  if (!fit.converged || !IsDefinite(ball, options)) return BlobStatus::kPoorFit;
   if (ball.semi_minor_px < options.min_axis_ratio * ball.semi_major_px) return BlobStatus::kPartly;
-  if (ball.visible_fraction < kSmallestVisibleFraction) return BlobStatus::kPartly;
+  if (ball.smear_px.norm() > kLongestSmear_diameters * ball.diameter_px()) {
+    return BlobStatus::kPartly;
+  }
+  if (ball.visible_fraction < kSmallestVisibleFraction - kVisible_sigma * fit.visible_sigma) {
+    return BlobStatus::kPartly;
+  }
   const double signal_to_noise_db =
-      20 * std::log10(std::max(ball.amplitude_dn, 1e-9) / blob.noise_dn);
+      20 * std::log10(std::max(BrightnessOf(ball), 1e-9) / blob.noise_dn);
   if (signal_to_noise_db < options.min_signal_to_noise_db) return BlobStatus::kPoorFit;
   const double limit = LargestChi2Dof(fit.dof, options.max_chi2_probability_exponent);
   if (ball.chi2_dof <= limit) return BlobStatus::kOk;
   // χ² beyond the noise's reach: still a ball where the misfit is small against its brightness (a
   // lens is not exactly Gaussian); a hidden part or a neighbour leaves far more.
-  const double misfit = std::sqrt(ball.chi2_dof - 1) * blob.noise_dn / ball.amplitude_dn;
+  const double misfit = std::sqrt(ball.chi2_dof - 1) * blob.noise_dn / BrightnessOf(ball);
   return misfit < kLargestMisfit ? BlobStatus::kOk : BlobStatus::kPoorFit;
 }
 

@@ -29,8 +29,6 @@ bool IsBefore(const BallObservation& a, const BallObservation& b) {
                                             : a.center_px.x() < b.center_px.x();
 }
 
-const std::vector<SearchWindow> kWholeImage;
-
 }  // namespace
 
 struct BallDetector::Workspace {
@@ -40,7 +38,27 @@ struct BallDetector::Workspace {
   BackgroundMap background;
   Segmenter segmenter;
   std::unique_ptr<BlobMeasurer> measurer;
+  std::vector<SearchWindow> no_windows;                   // stays empty
+  int background_width_px = 0, background_height_px = 0;  ///< of the image that gave the background
+
+  void CheckSize(const ImageView& image) const;
+  void Measure(const ImageView& image, const std::vector<SearchWindow>& windows,
+               std::vector<BallObservation>& balls);
 };
+
+void BallDetector::Workspace::CheckSize(const ImageView& image) const {
+  if (mask.empty()) return;
+  if (mask.width_px() != image.width_px || mask.height_px() != image.height_px) {
+    throw std::invalid_argument("BallDetector: the mask has another size than the image");
+  }
+}
+
+void BallDetector::Workspace::Measure(const ImageView& image,
+                                      const std::vector<SearchWindow>& windows,
+                                      std::vector<BallObservation>& balls) {
+  measurer->Measure({image, segmenter, background, noise, options, windows}, balls);
+  std::sort(balls.begin(), balls.end(), IsBefore);
+}
 
 BallDetector::BallDetector(const SensorNoise& noise, const DetectionOptions& options,
                            ImageMask mask)
@@ -62,15 +80,24 @@ void BallDetector::Detect(const ImageView& image, std::vector<BallObservation>& 
   balls.clear();
   if (image.empty()) return;
   Workspace& w = *workspace_;
+  w.CheckSize(image);
   EstimateBackground(image, w.noise, w.options.max_diameter_px, w.background);
-  w.segmenter.Segment(image, w.background, w.options.threshold_sigma);
-  w.measurer->Measure({image, w.segmenter, w.background, w.noise, w.options, kWholeImage}, balls);
-  std::sort(balls.begin(), balls.end(), IsBefore);
+  w.background_width_px = image.width_px;
+  w.background_height_px = image.height_px;
+  w.segmenter.Segment(image, w.background, w.options.threshold_sigma, &w.mask);
+  w.Measure(image, w.no_windows, balls);
 }
 
-void BallDetector::Detect(const ImageView& image, const std::vector<SearchWindow>& /*windows*/,
+void BallDetector::Detect(const ImageView& image, const std::vector<SearchWindow>& windows,
                           std::vector<BallObservation>& balls) {
-  Detect(image, balls);
+  Workspace& w = *workspace_;
+  if (image.width_px != w.background_width_px || image.height_px != w.background_height_px) {
+    return Detect(image, balls);
+  }
+  balls.clear();
+  if (image.empty() || windows.empty()) return;
+  w.segmenter.Segment(image, w.background, w.options.threshold_sigma, &w.mask, windows);
+  w.Measure(image, windows, balls);
 }
 
 std::vector<BallObservation> DetectBalls(const ImageView& image, const SensorNoise& noise,

@@ -5,6 +5,7 @@
 
 #include "background_map.h"
 #include "background_variance.h"
+#include "ball_equations.h"
 #include "ball_fitter.h"
 #include "classify_blob.h"
 #include "segment_blobs.h"
@@ -16,27 +17,75 @@ namespace {
 /// Pixels this far inside the limb show the ball's own light: nearer to it the blur's true shape
 /// would leak into the noise.
 constexpr float kInside = 1.5F;
+/// A smeared ball has no sharp limb: where it is so bright, a share of its height.
+constexpr double kBright = 0.4;
 /// A ball that scatters this much more than the median one is hidden in part, or no ball.
 constexpr double kLargestScatterRatio = 2;
-/// A residual beyond this many σ shows a rod or a scratch (once the noise is known roughly).
-constexpr double kLargestResidual_sigma = 4.5;
-constexpr int kPasses = 4;
-constexpr int kFewestPixels = 200;
+/// A difference beyond this many σ shows a rod or a scratch (once the noise is known roughly).
+constexpr double kLargestDifference_sigma = 4.5;
+constexpr double kNoLimit = 1e6;
+constexpr int kPasses = 6;
+constexpr int kFewestDifferences = 200;
 
-/// Sums the squared residuals inside one ball.
-VarianceLine MeasureBall(const BallPatch& patch, const BallFit& fit, const SensorNoise& noise,
-                         double largest_residual_sigma) {
-  VarianceLine sums;
+/// Cuts a square around the fitted ball and predicts its light; gives the square's side, 0 where it
+/// would reach out of the image.
+int PredictSquare(const ImageView& image, const BallFit& fit, const SensorNoise& noise,
+                  const Eigen::Vector2d& origin_px, BallPatch& patch) {
+  const BallModel::Vector& ball = fit.model.values;
+  const Eigen::Vector2d center_px = origin_px + ball.head<2>();
+  const int reach =
+      static_cast<int>(std::ceil(ball[BallModel::kRadius] + 0.5 * fit.model.smear_px.norm()));
+  const int side = 2 * reach + 1;
+  const Eigen::Vector2i middle(static_cast<int>(std::lround(center_px.x())),
+                               static_cast<int>(std::lround(center_px.y())));
+  if (middle.minCoeff() < reach || middle.x() + reach >= image.width_px ||
+      middle.y() + reach >= image.height_px) {
+    return 0;
+  }
+  patch.Resize(side * side);
   for (int i = 0; i < patch.size; ++i) {
-    if (patch.weight[i] <= 0 || patch.depth[i] < kInside) continue;
-    const BallModel::Vector row = patch.jacobian.row(i).matrix().cast<double>();
-    const double leverage = patch.weight[i] * row.dot(fit.covariance * row);
-    if (leverage > 0.5) continue;
-    const double residual = patch.grey[i] - patch.model[i];
-    const double variance = residual * residual / (1 - leverage);
-    const double expected = noise.VarianceDn2(patch.model[i]);
-    if (variance > largest_residual_sigma * largest_residual_sigma * expected) continue;
-    sums.Add(patch.model[i], variance, expected);
+    const int u = middle.x() - reach + i % side;
+    const int v = middle.y() - reach + i / side;
+    patch.u[i] = static_cast<float>(u - origin_px.x());
+    patch.v[i] = static_cast<float>(v - origin_px.y());
+    patch.grey[i] = static_cast<float>(image.At(u, v));
+  }
+  EvaluateBallModel(fit.model, patch);
+  if (!fit.model.smear_px.isZero()) {
+    BallEquations unused;
+    LinearizeBall(noise, FitParameters::FromModel(fit.model), FitParameters::kNum, patch, unused);
+  }
+  return side;
+}
+
+/// Sums the second differences of neighbouring residuals inside one ball, along rows and columns:
+/// what the model does not know of the ball varies slowly and cancels, the noise does not.
+VarianceLine MeasureInside(const BallFit& fit, const SensorNoise& noise, double largest_sigma,
+                           int side, const BallPatch& patch) {
+  VarianceLine sums;
+  const BallModel::Vector& ball = fit.model.values;
+  const double smear_px = fit.model.smear_px.norm();
+  const bool smeared = smear_px > ball[BallModel::kRadius];
+  // A shorter smear carries the limb so far in on both sides; some are rods that look like one.
+  const auto deep = kInside + static_cast<float>(0.5 * smear_px / ball[BallModel::kBlur]);
+  const double level_dn = ball[BallModel::kLevel];
+  const double bright_dn =
+      level_dn + kBright * (patch.model.head(patch.size).maxCoeff() - level_dn);
+  const auto tells = [&](int i) {
+    const bool inside = smeared ? patch.model[i] > bright_dn : patch.depth[i] >= deep;
+    return inside && patch.grey[i] > 0 && patch.grey[i] < static_cast<float>(noise.saturation_dn);
+  };
+  const auto residual = [&](int i) { return double{patch.grey[i]} - double{patch.model[i]}; };
+  for (int i = side; i < patch.size - side; ++i) {
+    for (const int step : {1, side}) {
+      if (!tells(i - step) || !tells(i) || !tells(i + step)) continue;
+      const double difference = residual(i - step) - 2 * residual(i) + residual(i + step);
+      const double variance = difference * difference / 6;
+      const double expected = noise.VarianceDn2(patch.model[i]);
+      if (variance <= largest_sigma * largest_sigma * expected) {
+        sums.Add(patch.model[i], variance, expected);
+      }
+    }
   }
   return sums;
 }
@@ -92,10 +141,11 @@ SensorNoise StartNoise(const std::vector<ImageView>& images, const DetectionOpti
 
 std::optional<SensorNoise> RefineNoise(const std::vector<ImageView>& images,
                                        const SensorNoise& noise, const DetectionOptions& options,
-                                       double largest_residual_sigma) {
+                                       double largest_sigma) {
   BackgroundMap background;
   Segmenter segmenter;
   BallFitter fitter;
+  BallPatch square;
   std::vector<const Blob*> candidates;
   std::vector<VarianceLine> balls;
   VarianceLine outside;
@@ -106,13 +156,13 @@ std::optional<SensorNoise> RefineNoise(const std::vector<ImageView>& images,
     ChooseCandidates(image, segmenter.blobs(), options, candidates);
     for (const Blob* blob : candidates) {
       const BallFit& fit = fitter.Fit(image, segmenter, *blob, noise);
-      const BallObservation ball = ClassifyBall(image, *blob, fit, fitter.origin(), options);
-      if (ball.status != BlobStatus::kOk) continue;
-      balls.push_back(MeasureBall(fitter.patch(), fit, noise, largest_residual_sigma));
+      if (!fit.converged) continue;
+      const int side = PredictSquare(image, fit, noise, fitter.origin(), square);
+      if (side > 0) balls.push_back(MeasureInside(fit, noise, largest_sigma, side, square));
     }
   }
   VarianceLine sums = SumOrdinary(balls);
-  if (sums.pixels() < kFewestPixels) return std::nullopt;
+  if (sums.pixels() < kFewestDifferences) return std::nullopt;
   sums.Add(outside);
   return sums.ToNoise(noise.saturation_dn);
 }
@@ -122,12 +172,10 @@ std::optional<SensorNoise> RefineNoise(const std::vector<ImageView>& images,
 std::optional<SensorNoise> EstimateNoise(const std::vector<ImageView>& images,
                                          const DetectionOptions& options) {
   if (images.empty()) return std::nullopt;
-  SensorNoise noise = StartNoise(images, options);
-  for (int pass = 0; pass < kPasses; ++pass) {
-    const auto refined =
-        RefineNoise(images, noise, options, pass == 0 ? 1e6 : kLargestResidual_sigma);
-    if (!refined) return std::nullopt;
-    noise = *refined;
+  std::optional<SensorNoise> noise =
+      RefineNoise(images, StartNoise(images, options), options, kNoLimit);
+  for (int pass = 1; pass < kPasses && noise; ++pass) {
+    noise = RefineNoise(images, *noise, options, kLargestDifference_sigma);
   }
   return noise;
 }

@@ -1,188 +1,172 @@
 #include "fit_ball.h"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "multiversion.h"
+#include "ball_equations.h"
+#include "ball_evidence.h"
+#include "ball_search.h"
+#include "fit_smear.h"
+#include "visible_share.h"
 
 namespace stereomotion {
 namespace {
 
-constexpr int kMaxIterations = 30;
-/// χ² that a further step could still win; 1e-3 leaves every parameter within 0.03 σ of the
-/// optimum.
-constexpr double kConverged = 1e-3;
-/// A step damped more than this is too short to tell how much a full one would win.
-constexpr double kTrustedDamping = 1e-2;
-/// χ² is summed in single precision; whether so small a share of it was won cannot be told.
-constexpr double kRounding = 1e-4;
+using F = FitParameters;
+using P = BallModel;
 
-/// The limb's shading is nearly one with blur, radius and amplitude where a ball is small or dim.
-/// This keeps the search where real balls are; it enters the steps, never the covariance, and by
-/// symmetry not the centre.
-constexpr double kUsualShading = 0.15;
-constexpr double kUsualShadingSpread = 0.15;
+/// χ² that uneven light must win to be taken: it costs the centre 1.4 × its σ. Noise alone (two
+/// degrees of freedom) wins it in one ball of a thousand.
+constexpr double kLightEvidence = 13.8;
+/// χ² of a smear, by the score test of one ball of a thousand that has none, for the smear to be
+/// tried; and what it must win then. By symmetry a needless smear leaves the centre as it is, but
+/// it is looked at twice.
+constexpr double kSmearTrial = 13.8;
+constexpr double kSmearEvidence = 4;
+/// A sphere seen 30° off axis is stretched by 0.035 only: more, by so many of its own standard
+/// deviations, is a smear, the more likely model of the two.
+constexpr double kNaturalStretch = 0.06;
+constexpr double kStretch_sigma = 3;
+/// A smear of so many radii, well fitted, needs no fit without it to compare with: an ellipse would
+/// have to be stretched by 0.1.
+constexpr double kPlainSmear_radii = 1.3;
+/// … well fitted: χ² within so many of its standard deviations.
+constexpr double kFitting_sigma = 4;
+/// Shorter smears cannot be told from blur [blurs]; nor do they matter.
+constexpr double kShortestSmear_blurs = 0.5;
 
-struct NormalEquations {
-  BallModel::Matrix hessian;
-  BallModel::Vector gradient;  ///< JᵀW(measured − model)
-};
+F::Vector WithSmear(F::Vector ball, const Eigen::Vector2d& smear_px) {
+  ball.segment<2>(F::kSmearU) = smear_px;
+  ball.segment<2>(P::kStretch1).setZero();
+  return ball;
+}
 
-STEREOMOTION_MULTIVERSION
-void AccumulateColumns(const BallPatch& patch, float* __restrict weighted,
-                       double* __restrict hessian, double* __restrict gradient) {
-  constexpr int kN = BallModel::kNumParameters;
-  const int size = patch.size;
-  const float* __restrict weight = patch.weight.data();
-  const float* __restrict grey = patch.grey.data();
-  const float* __restrict model = patch.model.data();
-  for (int k = 0; k < kN; ++k) {
-    const float* __restrict column = patch.jacobian.col(k).data();
-    float pull = 0;
-#pragma omp simd reduction(+ : pull)
-    for (int i = 0; i < size; ++i) {
-      weighted[i] = weight[i] * column[i];
-      pull += weighted[i] * (grey[i] - model[i]);
-    }
-    gradient[k] = pull;
-    for (int l = 0; l <= k; ++l) {
-      const float* __restrict other = patch.jacobian.col(l).data();
-      float sum = 0;
-#pragma omp simd reduction(+ : sum)
-      for (int i = 0; i < size; ++i) sum += weighted[i] * other[i];
-      hessian[k * kN + l] = hessian[l * kN + k] = sum;
-    }
+double LengthOf(const F::Vector& ball) { return ball.segment<2>(F::kSmearU).norm(); }
+
+bool IsFitting(const FittedBall& ball) {
+  const double dof = ball.search.equations.used - ball.terms.num_free();
+  return ball.search.converged &&
+         ball.search.equations.chi2 < dof + kFitting_sigma * std::sqrt(2 * dof);
+}
+
+/// Takes the model with a smear where it wins `evidence`.
+void TrySmear(const SensorNoise& noise, const Pulls& pulls, const F::Vector& from, double evidence,
+              BallPatch& patch, FittedBall& best) {
+  FittedBall smeared;
+  FitSmear(noise, pulls, from, patch, smeared);
+  smeared.search.iterations += best.search.iterations;
+  if (!smeared.search.converged) return;
+  if (LengthOf(smeared.search.at) < kShortestSmear_blurs * smeared.search.at[P::kBlur]) return;
+  const double gain = best.search.cost - smeared.search.cost;
+  if (!best.search.converged || gain > evidence) best = smeared;
+}
+
+void TryLight(const SensorNoise& noise, const Pulls& pulls, BallPatch& patch, FittedBall& best) {
+  FittedBall lit;
+  lit.terms.light = true;
+  SearchBall(noise, pulls, lit.terms, best.search.at, {}, patch, lit.search);
+  lit.search.iterations += best.search.iterations;
+  const double gain = best.search.cost - lit.search.cost;
+  if (lit.search.converged && gain > kLightEvidence) best = lit;
+}
+
+bool IsStretched(const BallSearch& search, const Pulls& pulls) {
+  if (search.at.segment<2>(P::kStretch1).norm() <= kNaturalStretch) return false;
+  const StretchEvidence evidence = StretchOf(search, pulls);
+  return evidence.stretch > kStretch_sigma * evidence.sigma;
+}
+
+/// Adds the terms that the plain fit's residuals or its stretch call for.
+void TryTerms(const SensorNoise& noise, const Pulls& pulls, BallPatch& patch, FittedBall& best) {
+  const BallEvidence evidence = TestBall(best.search, pulls, patch);
+  if (IsStretched(best.search, pulls)) {
+    TrySmear(noise, pulls, SmearFromStretch(best.search.at), 0, patch, best);
+  } else if (evidence.smear_gain > kSmearTrial) {
+    const F::Vector from = WithSmear(best.search.at, evidence.smear_px);
+    TrySmear(noise, pulls, from, kSmearEvidence, patch, best);
+  }
+  if (!best.terms.smear && evidence.light_gain > kLightEvidence) {
+    TryLight(noise, pulls, patch, best);
   }
 }
 
-NormalEquations Accumulate(BallPatch& patch) {
-  NormalEquations normal;
-  AccumulateColumns(patch, patch.work.data(), normal.hessian.data(), normal.gradient.data());
-  return normal;
+/// Fits a ball whose start shows a smear; falls back on one that does not.
+void FitLongish(const SensorNoise& noise, const Pulls& pulls, const BallModel& initial,
+                const F::Vector& plain, BallPatch& patch, FittedBall& best) {
+  TrySmear(noise, pulls, WithSmear(plain, initial.smear_px), kSmearEvidence, patch, best);
+  const double radius_px = best.search.at[P::kRadius];
+  if (IsFitting(best) && LengthOf(best.search.at) > kPlainSmear_radii * radius_px) return;
+  const FittedBall smeared = best;
+  best = {};
+  SearchBall(noise, pulls, best.terms, plain, {}, patch, best.search);
+  if (best.search.converged) TryTerms(noise, pulls, patch, best);
+  if (!smeared.search.converged) return;
+  const double evidence = best.terms.smear ? 0 : kSmearEvidence;
+  if (!best.search.converged || best.search.cost - smeared.search.cost > evidence) best = smeared;
 }
 
-STEREOMOTION_MULTIVERSION
-double Chi2(const BallPatch& patch) {
-  const float* __restrict weight = patch.weight.data();
-  const float* __restrict grey = patch.grey.data();
-  const float* __restrict model = patch.model.data();
-  float chi2 = 0;
-#pragma omp simd reduction(+ : chi2)
-  for (int i = 0; i < patch.size; ++i) {
-    const float residual = grey[i] - model[i];
-    chi2 += weight[i] * residual * residual;
+/// Computes by how much the centre spreads more than its Fisher information says, to second order.
+///
+/// The curvature Σ r ∂²m/∂u² of the likelihood is random too, with variance V = 3/8 I / blur² for a
+/// blurred edge in all directions, and E[1/(1 + x)²] = 1 + 3 E[x²] for x = curvature / I.
+double SecondOrder(const F::Vector& ball, const P::Matrix& covariance) {
+  const double smear2_px2 = ball.segment<2>(F::kSmearU).squaredNorm();
+  const double blur2_px2 = ball[P::kBlur] * ball[P::kBlur] + smear2_px2 / 12;
+  const double variance_px2 = 0.5 * covariance.topLeftCorner<2, 2>().trace();
+  return 1 + 3 * 3.0 / 8 * variance_px2 / blur2_px2;
+}
+
+/// Lets the blur of a ball out of focus go where it belongs: the pull would hold it back, and so
+/// would the covariance that follows from it. Where it goes must not depend on the start.
+void FreeBlur(const SensorNoise& noise, Pulls pulls, BallPatch& patch, FittedBall& best) {
+  constexpr int kRounds = 3;
+  P::Matrix covariance;
+  for (int i = 0; i < kRounds && best.search.converged; ++i) {
+    const BallSearch& search = best.search;
+    if (!InvertInformation(search.equations.hessian, best.terms, covariance)) return;
+    if (!pulls.LoosenBlur(search.at, covariance(P::kBlur, P::kBlur))) return;
+    FittedBall freed = best;
+    SearchBall(noise, pulls, freed.terms, best.search.at, {}, patch, freed.search);
+    if (!freed.search.converged) return;
+    best = freed;
   }
-  return chi2;
 }
 
-double ShadingCost(const BallModel& model) {
-  const double off = (model.values[BallModel::kShading] - kUsualShading) / kUsualShadingSpread;
-  return off * off;
-}
-
-NormalEquations WithUsualShading(NormalEquations normal, const BallModel& model) {
-  constexpr double kWeight = 1 / (kUsualShadingSpread * kUsualShadingSpread);
-  constexpr int kQ = BallModel::kShading;
-  normal.hessian(kQ, kQ) += kWeight;
-  normal.gradient[kQ] += kWeight * (kUsualShading - model.values[kQ]);
-  return normal;
-}
-
-/// Keeps a step inside the model's domain: the outline an ellipse, blur and radius positive.
-BallModel::Vector StepInsideDomain(const BallModel::Vector& from, BallModel::Vector step) {
-  using P = BallModel;
-  const double radius = from[P::kRadius];
-  const double reach =
-      std::max({std::abs(step[P::kU]), std::abs(step[P::kV]), std::abs(step[P::kRadius])}) /
-      (0.5 * radius);
-  if (reach > 1) step /= reach;
-  BallModel::Vector to = from + step;
-  to[P::kRadius] = std::max(to[P::kRadius], 0.4);
-  to[P::kBlur] = std::clamp(to[P::kBlur], 0.3, std::max(1.0, 0.8 * to[P::kRadius]));
-  to[P::kShading] = std::clamp(to[P::kShading], -0.5, 0.95);
-  to[P::kStretch1] = std::clamp(to[P::kStretch1], -0.45, 0.45);
-  to[P::kStretch2] = std::clamp(to[P::kStretch2], -0.45, 0.45);
-  const double stretch = std::hypot(to[P::kStretch1], to[P::kStretch2]);
-  if (stretch > 0.45) to.segment<2>(P::kStretch1) *= 0.45 / stretch;
-  return to;
-}
-
-/// Solves (H + λ diag H) x = g in units in which diag H is 1: the parameters' scales differ by 1e6.
-struct ScaledSolver {
-  explicit ScaledSolver(const BallModel::Matrix& hessian, double damping)
-      : scale(hessian.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse()) {
-    BallModel::Matrix scaled = scale.asDiagonal() * hessian * scale.asDiagonal();
-    scaled.diagonal().array() += damping;
-    llt.compute(scaled);
+void Finish(const SensorNoise& noise, const FittedBall& best, BallPatch& patch, BallFit& fit) {
+  const BallSearch& search = best.search;
+  const F::Vector& step = search.last_step;
+  const int n = best.terms.num_active();
+  fit.model = F::ToModel(search.at);
+  fit.chi2 = search.equations.chi2 -
+             step.head(n).dot(2 * search.equations.gradient.head(n) -
+                              search.equations.hessian.topLeftCorner(n, n) * step.head(n));
+  fit.dof = search.equations.used - best.terms.num_free();
+  fit.iterations = search.iterations;
+  MeasureVisible(noise, best, patch, fit);
+  fit.converged = search.converged && fit.dof > 0 &&
+                  InvertInformation(search.equations.hessian, best.terms, fit.covariance);
+  if (fit.converged) {
+    fit.covariance.topLeftCorner<2, 2>() *= SecondOrder(search.at, fit.covariance);
   }
-  [[nodiscard]] bool ok() const { return llt.info() == Eigen::Success; }
-  template <class M>
-  [[nodiscard]] auto Solve(const M& rhs) const {
-    return (scale.asDiagonal() * llt.solve(scale.asDiagonal() * rhs)).eval();
-  }
-  BallModel::Vector scale;
-  Eigen::LLT<BallModel::Matrix> llt;
-};
-
-/// Counts which share of the pixels inside the fitted outline reach half the ball's brightness.
-double VisibleFraction(const BallPatch& patch, const BallModel& model) {
-  const auto n = patch.size;
-  const auto half = static_cast<float>(model.values[BallModel::kLevel] +
-                                       0.5 * model.values[BallModel::kAmplitude]);
-  // A pixel at the limb is half bright by itself: one blur width inwards it is clearly ball.
-  const auto deep = patch.depth.head(n) > 1.0F;
-  const auto bright = deep && patch.grey.head(n) > half;
-  return deep.any() ? static_cast<double>(bright.count()) / static_cast<double>(deep.count()) : 1.0;
-}
-
-void Finish(const BallPatch& patch, const NormalEquations& normal, BallFit& fit) {
-  fit.chi2 = Chi2(patch);
-  const auto used = static_cast<int>((patch.weight.head(patch.size) > 0.0F).count());
-  fit.dof = used - BallModel::kNumParameters;
-  fit.visible_fraction = VisibleFraction(patch, fit.model);
-  const ScaledSolver undamped(normal.hessian, 0);
-  fit.converged = fit.converged && undamped.ok() && fit.dof > 0;
-  if (fit.converged) fit.covariance = undamped.Solve(BallModel::Matrix::Identity());
 }
 
 }  // namespace
 
 BallFit FitBall(const SensorNoise& noise, const BallModel& initial, BallPatch& patch) {
   BallFit fit;
-  fit.model = initial;
-  EvaluateBallModel(fit.model, patch);
-  WeighPatch(noise, patch);
-  double damping = 1e-3;
-  NormalEquations normal = Accumulate(patch);
-  for (int iteration = 0; iteration < kMaxIterations && !fit.converged; ++iteration) {
-    const NormalEquations guided = WithUsualShading(normal, fit.model);
-    ++fit.iterations;
-    const ScaledSolver solver(guided.hessian, damping);
-    if (!solver.ok()) {
-      damping = std::max(10 * damping, 1e-6);
-      continue;
-    }
-    const BallModel::Vector step = solver.Solve(guided.gradient);
-    fit.converged = damping <= kTrustedDamping && step.dot(guided.gradient) < kConverged;
-    if (fit.converged) break;
-    const double cost_before = Chi2(patch) + ShadingCost(fit.model);
-    const BallModel before = fit.model;
-    fit.model.values = StepInsideDomain(before.values, step);
-    EvaluateBallModel(fit.model, patch);
-    const bool worse = Chi2(patch) + ShadingCost(fit.model) > cost_before;
-    if (worse && step.dot(guided.gradient) > kRounding * cost_before) {
-      fit.model = before;
-      damping = std::max(10 * damping, 1e-4);
-      if (damping > 1e8) break;
-      EvaluateBallModel(fit.model, patch);
-      continue;
-    }
-    damping *= 0.1;
-    WeighPatch(noise, patch);
-    normal = Accumulate(patch);
+  if (patch.size == 0) return fit;
+  const Pulls pulls;
+  F::Vector plain = F::FromModel(initial);
+  plain.tail<4>().setZero();
+  FittedBall best;
+  if (initial.smear_px.isZero()) {
+    SearchBall(noise, pulls, best.terms, plain, {}, patch, best.search);
+    if (best.search.converged) TryTerms(noise, pulls, patch, best);
+  } else {
+    FitLongish(noise, pulls, initial, plain, patch, best);
   }
-  Finish(patch, normal, fit);
+  FreeBlur(noise, pulls, patch, best);
+  Finish(noise, best, patch, fit);
   return fit;
 }
 

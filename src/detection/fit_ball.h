@@ -14,13 +14,21 @@ struct BallFit {
   double chi2 = 0;
   int dof = 0;
   int iterations = 0;
-  double visible_fraction = 1;   ///< share of the pixels inside the outline that are bright
-  BallModel::Matrix covariance;  ///< inverse Fisher information
+  /// Share of the pixels inside the outline that are bright, what noise dims or brightens
+  /// accounted for; and its standard deviation by noise.
+  double visible_fraction = 1, visible_sigma = 0;
+  /// Inverse Fisher information, smear and light marginalised.
+  BallModel::Matrix covariance = BallModel::Matrix::Zero();
 };
 
-/// Fits the ball model to the patch by Levenberg–Marquardt with variances from the model itself
-/// (iteratively reweighted: quasi-likelihood of the sensor noise, McCullagh & Nelder 1989, ch. 9).
-/// The covariance is that of the undamped problem. `initial` must lie within about a radius.
+/// Fits the ball model to the patch by Levenberg–Marquardt (see `LinearizeBall` for the
+/// likelihood).
+///
+/// Starts from `initial`, which must lie within about a radius. The blur of a ball that does not
+/// tell it stays at `kUsualBlur_px`. A straight smear and uneven light join the model where the
+/// data call for them (`ball_evidence.h`); a smear is tried at once where `initial` has one. The
+/// covariance is that of the undamped problem and holds no prior; that of the centre has the
+/// second-order term, which a ball of 10 dB feels.
 BallFit FitBall(const SensorNoise& noise, const BallModel& initial, BallPatch& patch);
 
 }  // namespace stereomotion

@@ -1,166 +1,196 @@
 #include "segment_blobs.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
+#include <cstddef>
 
-#include "multiversion.h"
+#include "pixel_clamp.h"
 
 namespace stereomotion {
 namespace {
 
-/// Marks the chunks of a row that hold a pixel above their threshold; tells whether there is any.
-template <class T>
-STEREOMOTION_INLINE bool MarkChunks(const T* __restrict row,
-                                    const std::uint16_t* __restrict thresholds, int chunks,
-                                    std::uint8_t* __restrict marks) {
-  constexpr int kChunk = BackgroundMap::kChunk_px;
-  std::uint8_t any = 0;
-  for (int c = 0; c < chunks; ++c) {
-    T highest = 0;
-    for (int i = 0; i < kChunk; ++i) highest = std::max(highest, row[c * kChunk + i]);
-    marks[c] = highest > thresholds[c] ? 1 : 0;
-    any |= marks[c];
-  }
-  return any != 0;
-}
+/// An image with more runs than one in so many pixels, and some, holds no scene of balls; its
+/// threshold is raised so that it cannot take unbounded time.
+constexpr std::size_t kPixelsPerRun = 64;
+constexpr std::size_t kFewRuns = 1024;
+constexpr int kRaisings = 2;
+constexpr double kRaise = 4;
+/// Smaller things, in pixels above half their height, are no balls (of 2 px diameter).
+constexpr int kSmallestBall_px = 4;
+/// Where there are more smaller ones than one in so many pixels (and some), blobs of less than 4 px
+/// diameter are likely chance clusters of them: all are left out.
+constexpr int kPixelsPerSpeck = 640;
+constexpr int kFewSpecks = 256;
+constexpr int kSmallestAmongSpecks_px = 12;
+/// A glint on a ball is small, and most of what is above the threshold lies below half its height.
+constexpr int kLargestGlint_px = 12;
+constexpr double kTipShare = 0.4;
 
-STEREOMOTION_MULTIVERSION
-bool MarkBright(const std::uint8_t* row, const std::uint16_t* thresholds, int chunks,
-                std::uint8_t* marks) {
-  return MarkChunks(row, thresholds, chunks, marks);
-}
-
-STEREOMOTION_MULTIVERSION
-bool MarkBright(const std::uint16_t* row, const std::uint16_t* thresholds, int chunks,
-                std::uint8_t* marks) {
-  return MarkChunks(row, thresholds, chunks, marks);
-}
-
-template <class T>
-T ClampToPixel(double value) {
-  return static_cast<T>(std::clamp(value, 0.0, static_cast<double>(std::numeric_limits<T>::max())));
-}
-
-/// Appends the runs of [u_begin, u_end) above the threshold.
-template <class T>
-void AppendRuns(const T* row, int v, int u_begin, int u_end, T threshold, RunList& list) {
-  for (int u = u_begin; u < u_end;) {
-    while (u < u_end && row[u] <= threshold) ++u;
-    const int start = u;
-    while (u < u_end && row[u] > threshold) ++u;
-    if (u > start) list.Append(v, start, u);
-  }
-}
-
-void AddRun(const Run& run, Blob& blob) {
-  const double n = run.u_end - run.u_begin;
-  const double mid = 0.5 * (run.u_begin + run.u_end - 1);
-  const double sum_u = n * mid;
-  blob.sum_u += sum_u;
-  blob.sum_v += n * run.v;
-  blob.sum_uu += n * mid * mid + n * (n * n - 1) / 12;
-  blob.sum_uv += sum_u * run.v;
-  blob.sum_vv += n * run.v * static_cast<double>(run.v);
-  blob.area_px += run.u_end - run.u_begin;
-  blob.u_min = std::min(blob.u_min, run.u_begin);
-  blob.u_max = std::max(blob.u_max, run.u_end - 1);
-  blob.v_min = std::min(blob.v_min, run.v);
-  blob.v_max = std::max(blob.v_max, run.v);
-}
+bool IsBefore(const Run& a, const Run& b) { return a.v != b.v ? a.v < b.v : a.u_begin < b.u_begin; }
 
 }  // namespace
 
 template <class T>
-void Segmenter::FindRuns(const ImageView& image, const BackgroundMap& background,
-                         double threshold_sigma) {
-  constexpr int kChunk = BackgroundMap::kChunk_px;
-  const int whole_chunks = image.width_px / kChunk;
-  const int chunks = (image.width_px + kChunk - 1) / kChunk;
-  const int chunks_per_cell = background.cell_px / kChunk;
-  thresholds_.resize(static_cast<std::size_t>(chunks));
-  marks_.assign(static_cast<std::size_t>(chunks), 1);  // a last, narrower chunk is always searched
-  above_.Start(image.height_px);
-  for (int v = 0; v < image.height_px; ++v) {
-    const T* row = image.Row<T>(v);
-    if (v % background.cell_px == 0) {
-      for (int c = 0; c < chunks; ++c) {
-        const auto cell = static_cast<std::size_t>(v / background.cell_px * background.columns +
-                                                   c / chunks_per_cell);
-        thresholds_[static_cast<std::size_t>(c)] = ClampToPixel<T>(
-            background.level_dn[cell] + threshold_sigma * background.noise_dn[cell]);
-      }
-    }
-    const bool any = MarkBright(row, thresholds_.data(), whole_chunks, marks_.data());
-    for (int c = any ? 0 : whole_chunks; c < chunks; ++c) {
-      if (marks_[static_cast<std::size_t>(c)] == 0) continue;
-      AppendRuns(row, v, c * kChunk, std::min((c + 1) * kChunk, image.width_px),
-                 static_cast<T>(thresholds_[static_cast<std::size_t>(c)]), above_);
-    }
-    above_.FinishRow(v);
+void Segmenter::MeasurePeaks() {
+  for (const Run& run : above_.runs) {
+    Peak& peak = peaks_[static_cast<std::size_t>(run.label)];
+    const T* row = image_.Row<T>(run.v);
+    const T* highest = std::max_element(row + run.u_begin, row + run.u_end);
+    if (*highest <= peak.peak_dn) continue;
+    peak.peak_dn = *highest;
+    const auto cell =
+        static_cast<std::size_t>(background_->CellAt(static_cast<int>(highest - row), run.v));
+    peak.background_dn = background_->level_dn[cell];
+    peak.noise_dn = background_->noise_dn[cell];
   }
-  above_.Connect();
+}
+
+/// Tells bright balls from what is left to the weak blobs, and from specks.
+void Segmenter::SortPeaks(double threshold_sigma) {
+  for (Peak& peak : peaks_) {
+    // Lower ones would be cut at the threshold, not at half their height.
+    peak.is_ball_like = peak.peak_dn - peak.background_dn > 2 * threshold_sigma * peak.noise_dn;
+    const bool is_tip =
+        peak.half_area_px <= kLargestGlint_px && peak.half_area_px < kTipShare * peak.area_px;
+    peak.is_speck = peak.is_ball_like && (peak.half_area_px < kSmallestBall_px || is_tip);
+  }
+}
+
+/// Leaves out the small components of an image that is full of specks.
+void Segmenter::DropManySpecks() {
+  peaks_.assign(static_cast<std::size_t>(above_.num_labels), Peak{});
+  for (const Run& run : above_.runs) {
+    peaks_[static_cast<std::size_t>(run.label)].area_px += run.u_end - run.u_begin;
+  }
+  const auto specks = std::count_if(peaks_.begin(), peaks_.end(), [](const Peak& peak) {
+    return peak.area_px < kSmallestBall_px;
+  });
+  if (specks <= kFewSpecks + image_.width_px * image_.height_px / kPixelsPerSpeck) return;
+  for (Peak& peak : peaks_) peak.is_ball_like = peak.area_px >= kSmallestAmongSpecks_px;
+  DropRuns(above_);
+}
+
+/// Removes the runs of peaks that are none, or not any more.
+void Segmenter::DropRuns(RunList& list) {
+  const auto is_dropped = [&](const Run& run) {
+    return !peaks_[static_cast<std::size_t>(run.label)].is_ball_like;
+  };
+  const auto end = std::remove_if(list.runs.begin(), list.runs.end(), is_dropped);
+  if (end == list.runs.end()) return;
+  list.runs.erase(end, list.runs.end());
+  list.IndexRows();
+}
+
+void Segmenter::FindWeakBlobs(double threshold_sigma) {
+  weak_.Start(image_, *background_, mask_, threshold_sigma);
+  for (const Run& run : above_.runs) {
+    const Peak& peak = peaks_[static_cast<std::size_t>(run.label)];
+    if (!peak.is_ball_like || (peak.is_speck && peak.area_px > peak.half_area_px)) {
+      weak_.Look(run);
+    } else if (!peak.is_speck) {
+      weak_.Cover(run);
+    }
+  }
+  for (const WindowMark& mark : scan_.marks()) weak_.Look(mark);
+  DropRuns(above_);
+  weak_.Search(above_, peaks_);
+  DropRuns(above_);
+  DropRuns(half_);
+}
+
+/// Adds the weak blobs' runs to the bright ones'; their labels follow the bright ones'.
+void Segmenter::MergeWeakRuns() {
+  if (weak_.half_runs().empty()) return;
+  const int first_label = above_.num_labels;
+  const auto merge = [&](const std::vector<Run>& weak, RunList& list) {
+    merged_.resize(list.runs.size() + weak.size());
+    std::merge(list.runs.begin(), list.runs.end(), weak.begin(), weak.end(), merged_.begin(),
+               IsBefore);
+    list.runs.swap(merged_);
+  };
+  weak_.ShiftLabels(first_label);
+  merge(weak_.runs().runs, above_);
+  merge(weak_.half_runs(), half_);
+  above_.num_labels += weak_.runs().num_labels;
+  above_.IndexRows();
+  peaks_.insert(peaks_.end(), weak_.peaks().begin(), weak_.peaks().end());
 }
 
 template <class T>
-void Segmenter::CutAtHalfHeight(const ImageView& image, const BackgroundMap& background) {
-  Blob empty;
-  parents_.assign(static_cast<std::size_t>(above_.num_labels), empty);
+void Segmenter::CutAtHalfHeight() {
+  half_.Start(image_.height_px);
   for (const Run& run : above_.runs) {
-    Blob& parent = parents_[static_cast<std::size_t>(run.label)];
-    const T* row = image.Row<T>(run.v);
-    for (int u = run.u_begin; u < run.u_end; ++u) {
-      if (row[u] <= parent.peak_dn) continue;
-      parent.peak_dn = row[u];
-      const auto cell = static_cast<std::size_t>(background.CellAt(u, run.v));
-      parent.background_dn = background.level_dn[cell];
-      parent.noise_dn = background.noise_dn[cell];
+    Peak& peak = peaks_[static_cast<std::size_t>(run.label)];
+    const T threshold = ClampToPixel<T>(0.5 * (peak.peak_dn + peak.background_dn));
+    const T* row = image_.Row<T>(run.v);
+    for (int u = run.u_begin; u < run.u_end;) {
+      while (u < run.u_end && row[u] <= threshold) ++u;
+      const int start = u;
+      while (u < run.u_end && row[u] > threshold) ++u;
+      if (u == start) continue;
+      half_.Append(run.v, start, u, run.label);
+      peak.half_area_px += u - start;
     }
   }
-  half_.Start(image.height_px);
-  parent_of_run_.clear();
-  std::size_t next = 0;
-  for (int v = 0; v < image.height_px; ++v) {
-    for (; next < above_.runs.size() && above_.runs[next].v == v; ++next) {
-      const Run& run = above_.runs[next];
-      const Blob& parent = parents_[static_cast<std::size_t>(run.label)];
-      AppendRuns(image.Row<T>(v), v, run.u_begin, run.u_end,
-                 ClampToPixel<T>(0.5 * (parent.peak_dn + parent.background_dn)), half_);
-      parent_of_run_.resize(half_.runs.size(), run.label);
-    }
-    half_.FinishRow(v);
-  }
-  half_.Connect();
 }
 
-void Segmenter::GatherBlobs() {
-  Blob empty;
-  empty.u_min = empty.v_min = std::numeric_limits<int>::max();
-  empty.u_max = empty.v_max = -1;
-  blobs_.assign(static_cast<std::size_t>(half_.num_labels), empty);
-  for (std::size_t i = 0; i < half_.runs.size(); ++i) {
-    const Run& run = half_.runs[i];
-    Blob& blob = blobs_[static_cast<std::size_t>(run.label)];
-    const Blob& parent = parents_[static_cast<std::size_t>(parent_of_run_[i])];
-    blob.label = run.label;
-    blob.parent = parent_of_run_[i];
-    blob.peak_dn = parent.peak_dn;
-    blob.background_dn = parent.background_dn;
-    blob.noise_dn = parent.noise_dn;
-    AddRun(run, blob);
+template <class T>
+void Segmenter::SegmentAs(double threshold_sigma) {
+  const double bright_sigma = FindRuns(threshold_sigma);
+  DropManySpecks();
+  MeasurePeaks<T>();
+  CutAtHalfHeight<T>();
+  SortPeaks(bright_sigma);
+  // Weak balls close to the threshold have many runs themselves: theirs is not raised.
+  FindWeakBlobs(threshold_sigma);
+  MergeWeakRuns();
+}
+
+/// Finds the runs above the threshold; gives the threshold that was used.
+double Segmenter::FindRuns(double threshold_sigma) {
+  const std::size_t most_runs = kFewRuns + static_cast<std::size_t>(image_.width_px) *
+                                               static_cast<std::size_t>(image_.height_px) /
+                                               kPixelsPerRun;
+  for (int i = 0; i <= kRaisings; ++i) {
+    above_.Start(image_.height_px);
+    if (scan_.Scan(image_, *background_, mask_, area_, threshold_sigma, most_runs, above_)) break;
+    above_.Start(image_.height_px);
+    threshold_sigma *= kRaise;
   }
+  // Intervals side by side are searched one after the other.
+  if (!area_.is_whole()) std::sort(above_.runs.begin(), above_.runs.end(), IsBefore);
+  above_.Connect();
+  return threshold_sigma;
+}
+
+void Segmenter::SegmentArea(const ImageView& image, const BackgroundMap& background,
+                            double threshold_sigma, const ImageMask* mask) {
+  image_ = image;
+  background_ = &background;
+  mask_ = mask != nullptr && !mask->empty() ? mask : nullptr;
+  if (image.type == PixelType::kGray8) {
+    SegmentAs<std::uint8_t>(threshold_sigma);
+  } else {
+    SegmentAs<std::uint16_t>(threshold_sigma);
+  }
+  GatherBlobs(peaks_, half_, parent_of_run_, blobs_);
 }
 
 void Segmenter::Segment(const ImageView& image, const BackgroundMap& background,
-                        double threshold_sigma) {
-  if (image.type == PixelType::kGray8) {
-    FindRuns<std::uint8_t>(image, background, threshold_sigma);
-    CutAtHalfHeight<std::uint8_t>(image, background);
-  } else {
-    FindRuns<std::uint16_t>(image, background, threshold_sigma);
-    CutAtHalfHeight<std::uint16_t>(image, background);
-  }
-  GatherBlobs();
+                        double threshold_sigma, const ImageMask* mask) {
+  area_.SetWhole(image);
+  SegmentArea(image, background, threshold_sigma, mask);
+}
+
+void Segmenter::Segment(const ImageView& image, const BackgroundMap& background,
+                        double threshold_sigma, const ImageMask* mask,
+                        const std::vector<SearchWindow>& windows) {
+  area_.SetWindows(image, windows);
+  SegmentArea(image, background, threshold_sigma, mask);
+  const auto is_outside = [&](const Blob& blob) {
+    return !area_.Surrounds(blob.u_min, blob.u_max, blob.v_min, blob.v_max) ||
+           !IsInAnyWindow(blob.sum_u / blob.area_px, blob.sum_v / blob.area_px, windows);
+  };
+  blobs_.erase(std::remove_if(blobs_.begin(), blobs_.end(), is_outside), blobs_.end());
 }
 
 }  // namespace stereomotion

@@ -1,73 +1,66 @@
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "background_map.h"
+#include "gather_blobs.h"
+#include "pixel_scan.h"
+#include "run_list.h"
+#include "search_area.h"
 #include "stereomotion/core/image.h"
+#include "stereomotion/core/image_mask.h"
+#include "stereomotion/detection/detect_balls.h"
+#include "weak_blobs.h"
 
 namespace stereomotion {
 
-/// Holds neighbouring pixels of one row above a threshold.
-struct Run {
-  int v = 0;
-  int u_begin = 0;
-  int u_end = 0;  ///< one past the last
-  int label = -1;
-};
-
-/// Holds runs in the order (v, u) with an index of rows and their connected components.
-struct RunList {
-  std::vector<Run> runs;
-  std::vector<int> row_begin;  ///< height + 1 entries
-  std::vector<int> parent;     ///< union-find, reused
-  int num_labels = 0;
-
-  void Start(int height_px);
-  /// Appends a run; joins it to the last one where they touch in the same row.
-  void Append(int v, int u_begin, int u_end, int label = -1);
-  void FinishRow(int v) {
-    row_begin[static_cast<std::size_t>(v) + 1] = static_cast<int>(runs.size());
-  }
-  /// Labels 8-connected components by union-find, 0 … num_labels − 1 in order of first pixel.
-  void Connect();
-};
-
-/// Holds one bright blob, cut at half its height over the background.
-struct Blob {
-  int label = -1;                                  ///< of the half-height runs
-  int parent = -1;                                 ///< of the runs above the detection threshold
-  int u_min = 0, u_max = 0, v_min = 0, v_max = 0;  ///< inclusive
-  int area_px = 0;
-  double sum_u = 0, sum_v = 0, sum_uu = 0, sum_uv = 0, sum_vv = 0;  ///< of its pixels, unweighted
-  double peak_dn = 0;
-  double background_dn = 0;
-  double noise_dn = 0;
-};
-
 /// Segments bright blobs in one pass over the image, then once more inside them at half height.
+/// What is too weak for one pixel shows in the sums of 128 pixels, which are made on the way.
 /// Keeps its memory from image to image.
 class Segmenter {
  public:
-  /// Finds all blobs that rise `threshold_sigma` over the local background.
-  void Segment(const ImageView& image, const BackgroundMap& background, double threshold_sigma);
+  /// Finds all blobs that rise `threshold_sigma` over the local background: in a single pixel, or,
+  /// where they are at least some 6 px wide, in the image smoothed by a box of 3×3.
+  void Segment(const ImageView& image, const BackgroundMap& background, double threshold_sigma,
+               const ImageMask* mask = nullptr);
+  /// Finds the blobs whose middles lie in one of `windows`; one that reaches farther out of them
+  /// than some pixels is left out.
+  void Segment(const ImageView& image, const BackgroundMap& background, double threshold_sigma,
+               const ImageMask* mask, const std::vector<SearchWindow>& windows);
 
+  /// In the order of their first pixels.
   [[nodiscard]] const std::vector<Blob>& blobs() const { return blobs_; }
   [[nodiscard]] const RunList& above_threshold() const { return above_; }
   [[nodiscard]] const RunList& half_height() const { return half_; }
+  /// Pixels that hold no ball whatever they show; nothing: none. Valid until the mask goes.
+  [[nodiscard]] const ImageMask* mask() const { return mask_; }
 
  private:
+  void SegmentArea(const ImageView& image, const BackgroundMap& background, double threshold_sigma,
+                   const ImageMask* mask);
+  double FindRuns(double threshold_sigma);
   template <class T>
-  void FindRuns(const ImageView& image, const BackgroundMap& background, double threshold_sigma);
+  void SegmentAs(double threshold_sigma);
   template <class T>
-  void CutAtHalfHeight(const ImageView& image, const BackgroundMap& background);
-  void GatherBlobs();
+  void MeasurePeaks();
+  void DropManySpecks();
+  void SortPeaks(double threshold_sigma);
+  void DropRuns(RunList& list);
+  void FindWeakBlobs(double threshold_sigma);
+  template <class T>
+  void CutAtHalfHeight();
+  void MergeWeakRuns();
 
+  ImageView image_;
+  const BackgroundMap* background_ = nullptr;
+  const ImageMask* mask_ = nullptr;
+  SearchArea area_;
+  PixelScan scan_;
+  WeakBlobs weak_;
   RunList above_;
   RunList half_;
-  std::vector<std::uint16_t> thresholds_;  ///< of the chunks of one row of cells
-  std::vector<std::uint8_t> marks_;
-  std::vector<Blob> parents_;
+  std::vector<Run> merged_;
+  std::vector<Peak> peaks_;
   std::vector<int> parent_of_run_;
   std::vector<Blob> blobs_;
 };

@@ -56,7 +56,6 @@ TEST(RunList, ComponentsEqualFlooding) {
         bright[v][u] = Uniform(rng, 0, 1) < density;
         if (bright[v][u]) list.Append(v, u, u + 1);
       }
-      list.FinishRow(v);
     }
     list.Connect();
     EXPECT_EQ(list.num_labels, FloodCount(bright));

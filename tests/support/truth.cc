@@ -67,6 +67,8 @@ void ReadBalls(const fs::path& file, const Body& body, const std::array<std::str
     ball.id = {RodIndex(body, table.Text("rod")), std::stoi(table.Text("ball"))};
     ball.p_in_world_mm = {table.Number("x_mm"), table.Number("y_mm"), table.Number("z_mm")};
     ball.center_px = {table.Number("u_px"), table.Number("v_px")};
+    ball.outline_px = {table.Number("outline_u_px"), table.Number("outline_v_px")};
+    ball.diameter_px = table.Number("diameter_px");
     ball.visible = table.Number("visible");
     ball.inside = table.Number("inside") != 0;
     const auto camera = std::find(cameras.begin(), cameras.end(), table.Text("camera"));

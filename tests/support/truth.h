@@ -17,9 +17,11 @@ namespace stereomotion::testing {
 struct TrueBall {
   BallId id;
   Eigen::Vector3d p_in_world_mm;
-  Eigen::Vector2d center_px;  ///< exact projection of the ball's centre
-  double visible = 0;         ///< share of the outline that nothing nearer hides
-  bool inside = false;        ///< the whole outline lies in the image
+  Eigen::Vector2d center_px;   ///< exact projection of the ball's centre
+  Eigen::Vector2d outline_px;  ///< centroid of the outline
+  double diameter_px = 0;
+  double visible = 0;   ///< share of the outline that nothing nearer hides
+  bool inside = false;  ///< the whole outline lies in the image
 
   /// Tells whether a detector can be asked to find it.
   [[nodiscard]] bool IsShown() const { return inside && visible >= 0.9; }
