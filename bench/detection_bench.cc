@@ -2,58 +2,39 @@
 // SimpleBlobDetector, on the same images, in the same run, on one thread. See docs/performance.md.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "bench/frames.h"
 #include "bench/ratio_reporter.h"
-#include "bench/scene.h"
 #include "src/detection/background_map.h"
 #include "src/detection/ball_fitter.h"
-#include "src/detection/classify_blob.h"
+#include "src/detection/edge_table.h"
 #include "src/detection/segment_blobs.h"
 #include "stereomotion/detection/detect_balls.h"
 #include "stereomotion/pipeline/pose_tracker.h"
-#include "stereomotion/simulation/render_scene.h"
 
 namespace stereomotion::bench {
 namespace {
 
-/// Everything that the benchmarks share: one pair of a scene of ten balls, one of twenty.
-struct Data {
-  explicit Data(int rods) : scene(MakeScene(rods)) {
-    for (int camera = 0; camera < 2; ++camera) {
-      RenderSceneImage(scene, camera, 0, images[camera]);
-      const ImageView view = images[camera].View();
-      mats[camera] =
-          cv::Mat(view.height_px, view.width_px, CV_8UC1, const_cast<std::uint8_t*>(view.data),
-                  static_cast<std::size_t>(view.stride_bytes));
-    }
-  }
-  Scenario scene;
-  Image images[2];
-  cv::Mat mats[2];
-};
+using FramesOf = Frames& (*)();
 
-const Data& TenBalls() {
-  static const Data data(2);
-  return data;
+cv::Mat MatOf(const ImageView& view) {
+  return {view.height_px, view.width_px, CV_8UC1, const_cast<std::uint8_t*>(view.data),
+          static_cast<std::size_t>(view.stride_bytes)};
 }
 
-const Data& TwentyBalls() {
-  static const Data data(4);
-  return data;
-}
-
-void CvThreshold(benchmark::State& state) {
+void CvThreshold(benchmark::State& state, FramesOf frames) {
   cv::Mat out;
   for (auto _ : state) {
-    cv::threshold(TenBalls().mats[0], out, 60, 255, cv::THRESH_BINARY);
+    cv::threshold(MatOf(frames().Next()), out, 60, 255, cv::THRESH_BINARY);
     benchmark::DoNotOptimize(out.data);
   }
 }
 
-void CvSimpleBlobDetector(benchmark::State& state) {
+void CvSimpleBlobDetector(benchmark::State& state, FramesOf frames) {
   cv::SimpleBlobDetector::Params params;
   params.minThreshold = 50;
   params.maxThreshold = 110;
@@ -65,19 +46,19 @@ void CvSimpleBlobDetector(benchmark::State& state) {
   const auto detector = cv::SimpleBlobDetector::create(params);
   std::vector<cv::KeyPoint> points;
   for (auto _ : state) {
-    detector->detect(TenBalls().mats[0], points);
+    detector->detect(MatOf(frames().Next()), points);
     benchmark::DoNotOptimize(points.data());
   }
   if (points.size() != 10) state.SkipWithError("SimpleBlobDetector did not find the ten balls");
 }
 
-void SegmentTenBalls(benchmark::State& state) {
+void Segment(benchmark::State& state, FramesOf frames) {
   const DetectionOptions options;
-  const SensorNoise noise = TenBalls().scene.sensor.noise();
+  const SensorNoise noise = frames().noise();
   BackgroundMap background;
   Segmenter segmenter;
-  const ImageView view = TenBalls().images[0].View();
   for (auto _ : state) {
+    const ImageView view = frames().Next();
     EstimateBackground(view, noise, options.max_diameter_px, background);
     segmenter.Segment(view, background, options.threshold_sigma);
     benchmark::DoNotOptimize(segmenter.blobs().data());
@@ -85,13 +66,13 @@ void SegmentTenBalls(benchmark::State& state) {
   if (segmenter.blobs().size() != 10) state.SkipWithError("not ten blobs");
 }
 
-void FitTenBalls(benchmark::State& state) {
+void FitTenBalls(benchmark::State& state, FramesOf frames) {
   const DetectionOptions options;
-  const SensorNoise noise = TenBalls().scene.sensor.noise();
+  const SensorNoise noise = frames().noise();
   BackgroundMap background;
   Segmenter segmenter;
   BallFitter fitter;
-  const ImageView view = TenBalls().images[0].View();
+  const ImageView view = frames().Next();
   EstimateBackground(view, noise, options.max_diameter_px, background);
   segmenter.Segment(view, background, options.threshold_sigma);
   for (auto _ : state) {
@@ -101,52 +82,101 @@ void FitTenBalls(benchmark::State& state) {
   }
 }
 
-void Detect(benchmark::State& state, const Data& data, std::size_t expected) {
-  BallDetector detector(data.scene.sensor.noise());
+void Detect(benchmark::State& state, FramesOf frames, DetectorMethod method) {
+  DetectionOptions options;
+  options.method = method;
+  BallDetector detector(frames().noise(), options);
   std::vector<BallObservation> balls;
   for (auto _ : state) {
-    detector.Detect(data.images[0].View(), balls);
+    detector.Detect(frames().Next(), balls);
     benchmark::DoNotOptimize(balls.data());
   }
+  const std::size_t expected = 5 * frames().scene().body.rods.size();
   if (balls.size() != expected) state.SkipWithError("wrong number of balls");
 }
 
-void DetectTenBalls(benchmark::State& state) { Detect(state, TenBalls(), 10); }
-void DetectTwentyBalls(benchmark::State& state) { Detect(state, TwentyBalls(), 20); }
+/// Finds each frame's balls, as windows for the next frame.
+std::vector<std::vector<SearchWindow>> WindowsOf(Frames& frames) {
+  constexpr int kReach_px = 12;
+  std::vector<std::vector<SearchWindow>> windows(frames.count());
+  BallDetector detector(frames.noise());
+  std::vector<BallObservation> balls;
+  for (std::size_t i = 0; i < frames.count(); ++i) {
+    detector.Detect(frames.Next(), balls);
+    for (const BallObservation& ball : balls) {
+      const int u = static_cast<int>(ball.center_px.x());
+      const int v = static_cast<int>(ball.center_px.y());
+      windows[frames.current()].push_back(
+          {u - kReach_px, u + kReach_px, v - kReach_px, v + kReach_px, ball});
+    }
+  }
+  return windows;
+}
 
-void WholePair(benchmark::State& state, const Data& data) {
-  BallDetector detector(data.scene.sensor.noise());
-  PoseTracker tracker(data.scene.rig.cameras[0], data.scene.rig.cameras[1], data.scene.body);
+/// Tracking: every ball has a window around its place in the frame before (the first frame's: in
+/// the same frame).
+void DetectInWindows(benchmark::State& state, FramesOf frames, DetectorMethod method) {
+  DetectionOptions options;
+  options.method = method;
+  BallDetector detector(frames().noise(), options);
+  std::vector<BallObservation> balls;
+  const auto windows = WindowsOf(frames());
+  detector.Detect(frames().Next(), balls);
+  for (auto _ : state) {
+    const ImageView view = frames().Next();
+    const std::size_t before = std::max(frames().current(), std::size_t{1}) - 1;
+    detector.Detect(view, windows[before], balls);
+    benchmark::DoNotOptimize(balls.data());
+  }
+  if (balls.size() != 10) state.SkipWithError("wrong number of balls");
+}
+
+void WholePair(benchmark::State& state, FramesOf frames) {
+  const Scenario& scene = frames().scene();
+  BallDetector detector(frames().noise());
+  PoseTracker tracker(scene.rig.cameras[0], scene.rig.cameras[1], scene.body);
   std::vector<BallObservation> left;
   std::vector<BallObservation> right;
   std::int64_t time_ns = 0;
   bool found = false;
   for (auto _ : state) {
-    detector.Detect(data.images[0].View(), left);
-    detector.Detect(data.images[1].View(), right);
+    detector.Detect(frames().Next(), left);
+    detector.Detect(frames().Right(), right);
     time_ns += 1000000;
     found = tracker.Track(time_ns, left, right).has_value();
   }
   if (!found) state.SkipWithError("no pose");
 }
 
-void WholePairTenBalls(benchmark::State& state) { WholePair(state, TenBalls()); }
-void WholePairTwentyBalls(benchmark::State& state) { WholePair(state, TwentyBalls()); }
+constexpr auto kMl = DetectorMethod::kMaximumLikelihood;
+constexpr auto kCentroid = DetectorMethod::kCentroid;
+constexpr auto kWavelet = DetectorMethod::kWavelet;
 
-BENCHMARK(CvThreshold);
-BENCHMARK(CvSimpleBlobDetector);
-BENCHMARK(SegmentTenBalls);
-BENCHMARK(FitTenBalls);
-BENCHMARK(DetectTenBalls);
-BENCHMARK(DetectTwentyBalls);
-BENCHMARK(WholePairTenBalls);
-BENCHMARK(WholePairTwentyBalls);
+BENCHMARK_CAPTURE(CvThreshold, hot, HotTenBalls);
+BENCHMARK_CAPTURE(CvThreshold, streaming, StreamingTenBalls);
+BENCHMARK_CAPTURE(CvSimpleBlobDetector, streaming, StreamingTenBalls);
+BENCHMARK_CAPTURE(Segment, hot, HotTenBalls);
+BENCHMARK_CAPTURE(Segment, streaming, StreamingTenBalls);
+BENCHMARK_CAPTURE(FitTenBalls, hot, HotTenBalls);
+BENCHMARK_CAPTURE(Detect, hot_ml, HotTenBalls, kMl);
+BENCHMARK_CAPTURE(Detect, hot_ml_20_balls, HotTwentyBalls, kMl);
+BENCHMARK_CAPTURE(Detect, hot_centroid, HotTenBalls, kCentroid);
+BENCHMARK_CAPTURE(Detect, streaming_ml, StreamingTenBalls, kMl);
+BENCHMARK_CAPTURE(Detect, streaming_centroid, StreamingTenBalls, kCentroid);
+BENCHMARK_CAPTURE(Detect, streaming_wavelet, StreamingTenBalls, kWavelet);
+BENCHMARK_CAPTURE(DetectInWindows, hot_ml, HotTenBalls, kMl);
+BENCHMARK_CAPTURE(DetectInWindows, streaming_ml, StreamingTenBalls, kMl);
+BENCHMARK_CAPTURE(DetectInWindows, streaming_centroid, StreamingTenBalls, kCentroid);
+BENCHMARK_CAPTURE(WholePair, hot_10_balls, HotTenBalls);
+BENCHMARK_CAPTURE(WholePair, hot_20_balls, HotTwentyBalls);
 
 }  // namespace
 }  // namespace stereomotion::bench
 
 int main(int argc, char** argv) {
   cv::setNumThreads(1);
+  // Built once in a program's life: not to be counted among the first frame's instructions.
+  stereomotion::EdgeTable::Get();
   // 51 interleaved repetitions unless the command line says otherwise: it comes later and wins.
   std::vector<char*> arguments = {argv[0]};
   char repetitions[] = "--benchmark_repetitions=51";

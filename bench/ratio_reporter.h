@@ -8,8 +8,10 @@
 
 namespace stereomotion::bench {
 
-/// Prints the median of every benchmark's repetitions, and its ratio to the median of `reference`
-/// in the same run: machines differ and are noisy, ratios less so.
+/// Prints the median processor time (which other programs disturb least) of every benchmark's
+/// repetitions, and its ratio to the median of `reference`
+/// of the same group in the same run: machines differ and are noisy, ratios less so. The benchmark
+/// `Name/group_…` belongs to `group`.
 class RatioReporter : public benchmark::BenchmarkReporter {
  public:
   explicit RatioReporter(std::string reference) : reference_(std::move(reference)) {}

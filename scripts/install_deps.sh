@@ -1,6 +1,9 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that stereomotion needs, those only that are missing; asks nothing.
-# usage: scripts/install_deps.sh [--lint]     (--lint: also what preset lint and pre-commit need)
+# usage: scripts/install_deps.sh [--lint] [--plots] [--fuzz]
+#   --lint    also what preset lint and pre-commit need
+#   --plots   also what draws the plots of the documentation (scripts/accuracy.sh)
+#   --fuzz    also what scripts/fuzz.sh needs
 set -euo pipefail
 . "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
@@ -10,7 +13,17 @@ packages=(
   libfmt-dev libspdlog-dev libcli11-dev libssl-dev zlib1g-dev libapriltag-dev
   libgtest-dev libbenchmark-dev
 )
-if [[ ${1:-} == --lint ]]; then packages+=(clang-tidy clang-format); fi
+for argument in "$@"; do
+  case $argument in
+    --lint) packages+=(clang-tidy clang-format) ;;
+    --plots) packages+=(python3-matplotlib) ;;
+    --fuzz) packages+=(clang libclang-rt-dev) ;;
+    *)
+      echo "install_deps.sh: unknown argument '$argument'; expected --lint, --plots or --fuzz" >&2
+      exit 2
+      ;;
+  esac
+done
 
 is_installed() { [[ $(dpkg-query -W -f='${Status}' "$1" 2>/dev/null) == *' installed' ]]; }
 
