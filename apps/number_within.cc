@@ -28,6 +28,13 @@ CLI::Validator NumberWithin(double lowest, double highest) {
   return Within(lowest, highest, "a number");
 }
 
+CLI::Validator NotEmpty() {
+  const auto check = [](std::string& text) -> std::string {
+    return text.empty() ? "found an empty name, expected a file" : "";
+  };
+  return {check, "FILE"};
+}
+
 CLI::Validator WholeNumberWithin(std::int64_t lowest, std::int64_t highest) {
   return Within(lowest, highest, "a whole number");
 }

@@ -17,4 +17,7 @@ CLI::Validator NumberWithin(double lowest, double highest);
 /// The same for whole numbers.
 CLI::Validator WholeNumberWithin(std::int64_t lowest, std::int64_t highest);
 
+/// Accepts any text but none: an empty name is a shell variable that was not set.
+CLI::Validator NotEmpty();
+
 }  // namespace stereomotion::app

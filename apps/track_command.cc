@@ -8,20 +8,21 @@
 #include <ctime>
 #include <memory>
 #include <optional>
-#include <thread>
 
 #include "commands.h"
+#include "learn_mask_run.h"
 #include "number_within.h"
 #include "progress.h"
 #include "run_statistics.h"
-#include "stereomotion/capture/recording.h"
-#include "stereomotion/capture/sha256.h"
 #include "stereomotion/io/output_error.h"
+#include "stereomotion/io/run_report.h"
+#include "stereomotion/io/run_trace.h"
 #include "stereomotion/io/run_writer.h"
+#include "stereomotion/io/write_file.h"
 #include "stereomotion/pipeline/measure.h"
 #include "stop_signal.h"
 #include "track_inputs.h"
-#include "version.h"
+#include "track_record.h"
 
 namespace stereomotion::app {
 namespace {
@@ -30,50 +31,13 @@ namespace fs = std::filesystem;
 
 constexpr std::int64_t kReasonsToTell = 3;
 
-std::string UtcNow() {
-  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
-}
-
-RunRecord StartRecord(const TrackInputs& inputs, const CommonOptions& common) {
-  const RecordingReport& report = inputs.recording->report();
-  const auto& cameras = inputs.setup.rig.cameras;
-  RunRecord record;
-  record.version = kVersion;
-  record.command = common.command_line;
-  record.started = UtcNow();
-  record.left_camera = cameras[static_cast<std::size_t>(inputs.setup.left_camera)].name;
-  record.right_camera = cameras[static_cast<std::size_t>(inputs.setup.right_camera)].name;
-  record.left_frames = report.left_frames;
-  record.right_frames = report.right_frames;
-  record.unpaired_left = report.unpaired_left;
-  record.unpaired_right = report.unpaired_right;
-  record.paired_by_time = report.paired_by_time;
-  record.warnings = report.warnings;
-  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  record.threads = inputs.options.threads > 0 ? inputs.options.threads : cores;
-  return record;
-}
-
-void AddInputs(const TrackOptions& options, const Recording& recording, RunRecord& record) {
-  record.inputs = {{"rig", options.rig, Sha256OfFile(options.rig)},
-                   {"body", options.body, Sha256OfFile(options.body)}};
-  for (const auto& [side, role, path] :
-       {std::tuple{Side::kLeft, "left", options.left}, {Side::kRight, "right", options.right}}) {
-    const std::string images = recording.InputDigest(side);
-    if (!images.empty()) record.inputs.push_back({role, path, images});
-    for (const fs::path& file : recording.InputFiles(side)) {
-      record.inputs.push_back({role, file.string(), Sha256OfFile(file)});
-    }
-  }
-}
-
 std::string DefaultRunName() {
   return fmt::format("run-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
 }
 
 // Measures into `writer`; a full disk ends the run early and is told by the result.
 std::optional<OutputError> Measure(const TrackInputs& inputs, const CommonOptions& common,
-                                   RunWriter& writer, RunStatistics& statistics,
+                                   RunWriter& writer, RunStatistics& statistics, RunTrace& trace,
                                    RunSummary& summary) {
   const std::atomic<bool>& stop = CatchStopSignals();
   const std::int64_t rest = inputs.recording->size() - inputs.options.first;
@@ -94,6 +58,7 @@ std::optional<OutputError> Measure(const TrackInputs& inputs, const CommonOption
       return false;
     }
     statistics.Add(measurement);
+    trace.Add(measurement);
     progress.Step();
     return true;
   };
@@ -124,19 +89,78 @@ int Finish(const RunSummary& summary, const RunStatistics& statistics, const fs:
   return kNoAnswer;
 }
 
+void WriteReport(const TrackInputs& inputs, const RunRecord& record, const RunTrace& trace,
+                 const fs::path& folder) {
+  const auto& cameras = inputs.setup.rig.cameras;
+  const RunReport report{record, trace, cameras[static_cast<std::size_t>(inputs.setup.left_camera)],
+                         cameras[static_cast<std::size_t>(inputs.setup.right_camera)],
+                         inputs.masks};
+  WriteFileAtomically(folder / "report.html", RunHtml(report));
+}
+
+// The report first: `done` says that all files are there.
+void Conclude(const TrackInputs& inputs, const RunTrace& trace, const fs::path& folder,
+              std::optional<OutputError> failure, RunWriter& writer, RunRecord& record) {
+  record.state = record.summary.interrupted ? "interrupted" : "done";
+  try {
+    if (!failure) WriteReport(inputs, record, trace, folder);
+  } catch (const OutputError& error) {
+    failure = error;
+  }
+  if (failure) record.state = "output_failed";
+  writer.WriteRecord(record);
+  if (failure) throw OutputError(*failure);
+}
+
 int RunTrack(const TrackOptions& options, const CommonOptions& common) {
   const TrackInputs inputs = LoadTrackInputs(options);
-  RunRecord record = StartRecord(inputs, common);
+  if (!options.learn_mask.empty()) return RunLearnMask(options, inputs, common);
+  RunRecord record = StartRecord(inputs, options, common);
   const fs::path folder = options.output.empty() ? DefaultRunName() : options.output;
   RunWriter writer(folder, {inputs.setup.body, record.left_camera, record.right_camera},
                    options.force, record);
+  std::error_code ignored;
+  fs::remove(folder / "report.html", ignored);  // of an overwritten run
   RunStatistics statistics;
-  const auto failure = Measure(inputs, common, writer, statistics, record.summary);
-  record.state = failure ? "output_failed" : record.summary.interrupted ? "interrupted" : "done";
+  RunTrace trace(inputs.setup.body);
+  const auto failure = Measure(inputs, common, writer, statistics, trace, record.summary);
   AddInputs(options, *inputs.recording, record);
-  writer.WriteRecord(record);
-  if (failure) throw OutputError(*failure);
+  Conclude(inputs, trace, folder, failure, writer, record);
   return Finish(record.summary, statistics, folder, common);
+}
+
+// What changes how the images are measured.
+void AddMeasuringOptions(CLI::App& track, TrackOptions& options) {
+  constexpr std::int64_t kMostBetween = 10000;  // nobody waits longer for a ball to be seen
+  constexpr double kShortest_ms = 1e-4, kLongest_ms = 1e5;
+  track
+      .add_option("--detector", options.detector,
+                  "How a ball's centre is measured. ml: fit under the sensor's noise, the most "
+                  "accurate; wavelet: edge points and an ellipse, for whole balls (no poses where "
+                  "rods cut them or they smear); centroid: the fastest, for whole balls")
+      ->check(CLI::IsMember(DetectorNames()))
+      ->capture_default_str();
+  track
+      .add_option("--search-every", options.search_every,
+                  "Search every Nth pair whole, the others only where the balls seen before should "
+                  "be. Faster; a ball that comes into sight may be found N - 1 pairs late")
+      ->check(WholeNumberWithin(1, kMostBetween))
+      ->capture_default_str();
+  track
+      .add_option("--exposure-ms", options.exposure_ms,
+                  "How long a frame was exposed, where the recording does not tell: fast curved "
+                  "motion is corrected for it")
+      ->check(NumberWithin(kShortest_ms, kLongest_ms));
+  auto* mask = track.add_option("--mask", options.mask,
+                                "Places in the images where nothing is a ball (mask.yaml)");
+  mask->check(NotEmpty());
+  track
+      .add_option("--learn-mask", options.learn_mask,
+                  "Instead of measuring: write a mask of what stays bright in this recording, best "
+                  "one without the body, else one in which it moves")
+      ->check(NotEmpty())
+      ->excludes(mask)
+      ->excludes(track.get_option("--output"));
 }
 
 }  // namespace
@@ -160,10 +184,16 @@ Run AddTrackCommand(CLI::App& app) {
   track->add_option("--threads", options->threads, "Threads; 0: one a core. Results do not change")
       ->check(WholeNumberWithin(0, kMostThreads))
       ->capture_default_str();
+  AddMeasuringOptions(*track, *options);
   track->add_flag("--force", options->force, "Overwrite an existing output");
   track->footer(
-      "Example: stereomotion track --left rec/cam0 --right rec/cam1 --rig rec/rig.yaml "
-      "--body body.yaml --output result");
+      "Examples:\n"
+      "  stereomotion track --left rec/cam0 --right rec/cam1 --rig rec/rig.yaml --body body.yaml\n"
+      "  stereomotion track --left cam0 --right cam1 --body body.yaml --detector centroid\n"
+      "  stereomotion track --left cam0 --right cam1 --body body.yaml --search-every 10\n"
+      "  stereomotion track --left empty/cam0 --right empty/cam1 --body body.yaml --learn-mask "
+      "mask.yaml\n"
+      "  stereomotion track --left cam0 --right cam1 --body body.yaml --mask mask.yaml");
   return [options](const CommonOptions& common) { return RunTrack(*options, common); };
 }
 

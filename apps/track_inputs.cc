@@ -10,6 +10,7 @@
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/body_file.h"
 #include "stereomotion/io/rig_file.h"
+#include "track_checks.h"
 
 namespace stereomotion::app {
 namespace {
@@ -47,6 +48,30 @@ void CheckImageSize(const ImageView& image, const RigCamera& camera, const std::
       rig_file));
 }
 
+void LoadMasks(const TrackOptions& options, TrackInputs& inputs) {
+  if (options.mask.empty()) return;
+  MeasureSetup& setup = inputs.setup;
+  const auto& cameras = setup.rig.cameras;
+  inputs.masks = ReadMask(options.mask, setup.rig);
+  setup.left_mask = MakeMask(inputs.masks, cameras[static_cast<std::size_t>(setup.left_camera)]);
+  setup.right_mask = MakeMask(inputs.masks, cameras[static_cast<std::size_t>(setup.right_camera)]);
+  inputs.warnings = MaskWarnings(setup, options.mask);
+}
+
+MeasureOptions MakeOptions(const TrackOptions& options) {
+  constexpr double kUsPerMs = 1000;
+  MeasureOptions measure;
+  const auto& names = DetectorNames();
+  const auto name = std::find(names.begin(), names.end(), options.detector);
+  measure.detection.method = static_cast<DetectorMethod>(name - names.begin());
+  measure.search_every = static_cast<int>(options.search_every);
+  measure.exposure_us = kUsPerMs * options.exposure_ms;
+  measure.threads = options.threads;
+  measure.first = options.start;
+  measure.count = options.count;
+  return measure;
+}
+
 void CheckRange(const TrackOptions& options, std::int64_t frames) {
   if (options.start < 0 || options.start >= frames) {
     throw UserError(fmt::format("--start: found {}, expected 0 to {}: {} has {} frames",
@@ -79,6 +104,11 @@ void CheckFirstImages(const TrackInputs& inputs, const ResolvedCameras& cameras,
 
 }  // namespace
 
+const std::vector<std::string>& DetectorNames() {
+  static const std::vector<std::string> names = {"ml", "wavelet", "centroid"};
+  return names;
+}
+
 TrackInputs LoadTrackInputs(const TrackOptions& options) {
   TrackInputs inputs;
   inputs.setup.rig = LoadRig(options);
@@ -89,11 +119,15 @@ TrackInputs LoadTrackInputs(const TrackOptions& options) {
   inputs.setup.right_camera = cameras.right.rig_camera;
   for (const auto& note : cameras.notes) spdlog::info(note);
   inputs.recording = OpenRecording(cameras.left.path, cameras.right.path, {options.fps, true});
-  for (const auto& warning : inputs.recording->report().warnings) spdlog::warn(warning);
+  inputs.camera_paths = {cameras.left.path, cameras.right.path};
+  const RecordingReport& report = inputs.recording->report();
+  for (const auto& warning : report.warnings) spdlog::warn(warning);
   CheckRange(options, inputs.recording->size());
-  inputs.options.threads = options.threads;
-  inputs.options.first = options.start;
-  inputs.options.count = options.count;
+  inputs.options = MakeOptions(options);
+  LoadMasks(options, inputs);
+  const auto more = ExposureWarnings(report, options.exposure_ms);
+  inputs.warnings.insert(inputs.warnings.end(), more.begin(), more.end());
+  for (const auto& warning : inputs.warnings) spdlog::warn(warning);
   CheckFirstImages(inputs, cameras, options);
   return inputs;
 }

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "stereomotion/capture/recording.h"
+#include "stereomotion/io/mask_file.h"
 #include "stereomotion/pipeline/measure.h"
 
 namespace stereomotion::app {
@@ -19,18 +23,29 @@ struct TrackOptions {
   std::int64_t start = 0;
   std::int64_t count = -1;
   int threads = 0;
+  std::string detector = "ml";
+  std::int64_t search_every = 1;
+  double exposure_ms = 0;  ///< 0: as the recording tells
+  std::string mask;        ///< file; empty: none
+  std::string learn_mask;  ///< file to write instead of a RUN; empty: measure
   bool force = false;
 };
 
 /// All that is read before the measuring starts.
 struct TrackInputs {
   MeasureSetup setup;
+  std::vector<CameraMask> masks;
   MeasureOptions options;
   std::unique_ptr<Recording> recording;
+  std::array<std::filesystem::path, 2> camera_paths;  ///< folder or video: left, right
+  std::vector<std::string> warnings;                  ///< for a person, besides the recording's
 };
 
-/// Reads rig, body and the recording's names and times, and looks at the first images. Throws
-/// `UserError` for whatever would make every frame fail.
+/// Lists the values of --detector, in the order of `DetectorMethod`.
+const std::vector<std::string>& DetectorNames();
+
+/// Reads rig, body, masks and the recording's names and times, and looks at the first images.
+/// Throws `UserError` for whatever would make every frame fail.
 TrackInputs LoadTrackInputs(const TrackOptions& options);
 
 }  // namespace stereomotion::app

@@ -43,6 +43,12 @@ std::vector<std::int64_t> Times(const FrameStream& stream) {
   return times_ns;
 }
 
+std::int64_t CountExposures(const FrameStream& stream) {
+  const auto& frames = stream.frames();
+  return std::count_if(frames.begin(), frames.end(),
+                       [](const FrameInfo& frame) { return frame.exposure_us > 0; });
+}
+
 std::vector<std::int64_t> ByPosition(std::size_t left_size, std::size_t right_size) {
   std::vector<std::int64_t> partner(left_size, -1);
   for (std::size_t i = 0; i < std::min(left_size, right_size); ++i) {
@@ -154,6 +160,8 @@ class StreamPair : public Recording {
     report_.left_frames = size();
     report_.right_frames = static_cast<std::int64_t>(right_->frames().size());
     report_.unpaired_left = std::count(partner_.begin(), partner_.end(), -1);
+    report_.left_with_exposure = CountExposures(*left_);
+    report_.right_with_exposure = CountExposures(*right_);
     report_.pairs = report_.left_frames - report_.unpaired_left;
     report_.unpaired_right = report_.right_frames - report_.pairs;
     for (const auto* stream : {left_.get(), right_.get()}) {

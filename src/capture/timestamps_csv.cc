@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <locale>
 #include <sstream>
 #include <string>
 #include <string_view>
@@ -80,6 +81,17 @@ class Table {
   std::vector<std::string> columns_;
 };
 
+double ReadExposure(const Table& table, int column) {
+  constexpr double kLongest_us = 1e7;  // ten seconds: nothing moves in a longer one
+  const auto exposure_us = table.Number<double>(column);
+  // Written so that "nan" is refused, too.
+  if (exposure_us >= 0 && exposure_us <= kLongest_us) return exposure_us;
+  std::ostringstream found;
+  found.imbue(std::locale::classic());
+  found << "exposure_us " << exposure_us;
+  table.Fail(found.str(), "0 to 10000000 microseconds (0 or no cell: not known)");
+}
+
 }  // namespace
 
 std::vector<FrameInfo> ReadTimestamps(const std::filesystem::path& file) {
@@ -92,7 +104,7 @@ std::vector<FrameInfo> ReadTimestamps(const std::filesystem::path& file) {
   std::vector<FrameInfo> rows;
   while (table.NextLine()) {
     FrameInfo row{table.Number<std::int64_t>(frame), table.Number<std::int64_t>(time), 0};
-    if (exposure >= 0 && !table.IsBlank(exposure)) row.exposure_us = table.Number<double>(exposure);
+    if (exposure >= 0 && !table.IsBlank(exposure)) row.exposure_us = ReadExposure(table, exposure);
     if (row.index < 0) table.Fail("frame " + std::to_string(row.index), "0 or more");
     if (!rows.empty() && row.timestamp_ns <= rows.back().timestamp_ns) {
       table.Fail("timestamp_ns " + std::to_string(row.timestamp_ns),

@@ -72,6 +72,17 @@ std::string ValueText(double value, double sigma) {
   return fmt::format("{:.{}f}", std::abs(value) < half_step ? 0.0 : value, decimals);  // no "-0.00"
 }
 
+std::string Counted(std::int64_t number, std::string_view thing) {
+  return fmt::format("{} {}{}", number, thing, number == 1 ? "" : "s");
+}
+
+std::string Ordinal(std::int64_t number) {
+  const bool teen = number / 10 % 10 == 1;
+  const std::int64_t last = teen ? 0 : number % 10;
+  const char* ending = last == 1 ? "st" : last == 2 ? "nd" : last == 3 ? "rd" : "th";
+  return std::to_string(number) + ending;
+}
+
 HtmlTable::HtmlTable(std::string columns, const std::vector<std::string>& heads)
     : columns_(std::move(columns)) {
   text_ = "<div class=\"wide\"><table><thead><tr>";

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -21,6 +22,12 @@ std::string Digits(const std::optional<double>& number, int significant);
 
 /// Spells a value down to the second significant digit of its standard uncertainty.
 std::string ValueText(double value, double sigma);
+
+/// Spells a number of things: 1 pair, 2 pairs.
+std::string Counted(std::int64_t number, std::string_view thing);
+
+/// Spells a place in an order: 1st, 2nd, 3rd, 4th, 11th, 21st.
+std::string Ordinal(std::int64_t number);
 
 /// Builds an HTML table row by row. Cells are HTML already.
 class HtmlTable {

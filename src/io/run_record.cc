@@ -1,5 +1,6 @@
 #include "stereomotion/io/run_record.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace stereomotion {
@@ -7,12 +8,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+// To two digits: the median comes from a histogram of 4 % wide classes.
+double Rounded(double level) {
+  if (!(level > 0)) return level;
+  const double scale = std::pow(10, 1 - std::floor(std::log10(level)));
+  return std::round(level * scale) / scale;
+}
+
 Json NoiseJson(const NoiseRecord& record) {
+  const Json origin = record.origin.empty() ? Json(nullptr) : Json(record.origin);  // not known yet
   return {{"gain_e_per_dn", record.noise.gain_e_per_dn},
           {"read_e", record.noise.read_e},
           {"black_dn", record.noise.black_dn},
           {"saturation_dn", record.noise.saturation_dn},
-          {"origin", record.origin},
+          {"origin", origin},
           {"pairs_used", record.pairs_used}};
 }
 
@@ -28,6 +37,26 @@ Json FramesJson(const RunRecord& record) {
           {"read", record.summary.pairs_read},
           {"tracked", record.summary.poses},
           {"lost", lost}};
+}
+
+Json SearchJson(const RunRecord& record) {
+  return {{"every", record.search_every},
+          {"whole_left", record.summary.whole_searches_left},
+          {"whole_right", record.summary.whole_searches_right}};
+}
+
+Json ExposureJson(const RunRecord& record) {
+  const Json given = record.exposure_us > 0 ? Json(record.exposure_us) : Json(nullptr);
+  return {{"given_us", given},
+          {"poses_moved_to_mid_exposure", record.summary.poses_moved_to_mid_exposure}};
+}
+
+Json MasksJson(const RunRecord& record) {
+  Json masks = Json::array();
+  for (const MaskRecord& mask : record.masks) {
+    masks.push_back({{"camera", mask.camera}, {"regions", mask.regions}, {"pixels", mask.pixels}});
+  }
+  return masks;
 }
 
 Json InputsJson(const RunRecord& record) {
@@ -59,6 +88,10 @@ std::string RunJson(const RunRecord& record) {
       {"inputs", InputsJson(record)},
       {"cameras", {{"left", record.left_camera}, {"right", record.right_camera}}},
       {"frames", FramesJson(record)},
+      {"detector", record.detector},
+      {"search", SearchJson(record)},
+      {"masks", MasksJson(record)},
+      {"exposure", ExposureJson(record)},
       {"noise",
        {{"left", NoiseJson(summary.noise_left)}, {"right", NoiseJson(summary.noise_right)}}},
       {"median_chi2_dof", nullptr},
@@ -67,7 +100,7 @@ std::string RunJson(const RunRecord& record) {
       {"elapsed_ms", summary.elapsed_ms},
       {"pairs_per_second", nullptr},
       {"warnings", warnings}};
-  if (summary.median_chi2_dof) json["median_chi2_dof"] = *summary.median_chi2_dof;
+  if (summary.median_chi2_dof) json["median_chi2_dof"] = Rounded(*summary.median_chi2_dof);
   if (seconds > 0) json["pairs_per_second"] = rate;
   // File names need not be UTF-8; a name that is not must not cost the whole record.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

@@ -14,13 +14,31 @@ const RigCamera& CameraOf(const MeasureSetup& setup, int camera) {
       .cameras[static_cast<std::size_t>(camera == 0 ? setup.left_camera : setup.right_camera)];
 }
 
-/// Turns an observed outline centre into the projection of the ball's centre.
-CenterObservation ProjectedCenter(const RigCamera& camera, const Rod& rod,
-                                  const Eigen::Vector3d& p_in_world_mm, const BallObservation& ball,
-                                  int detection) {
-  CenterObservation center{detection, ball.center_px, ball.covariance_px2};
+/// World position of a ball; with a free roll, `t` is the first ball and the axis carries the
+/// others.
+Eigen::Vector3d BallInWorld(const Body& body, const PoseEstimate& pose, const BallId& id) {
+  const auto& rod = body.rods[static_cast<std::size_t>(id.rod)];
+  const Eigen::Vector3d& p = rod.balls_in_body_mm[static_cast<std::size_t>(id.ball)];
+  if (!pose.free_axis_in_world) return pose.world_from_body * p;
+  return pose.world_from_body.rotation * (p - body.rods.front().balls_in_body_mm.front()) +
+         pose.world_from_body.translation_mm;
+}
+
+/// Turns an observed outline centre into the projection of the ball's centre at mid-exposure.
+CenterObservation ProjectedCenter(const MeasureSetup& setup, const TrackedPair& pair,
+                                  const BallAssignment& used, const PoseEstimate& pose) {
+  const auto camera_index = static_cast<std::size_t>(used.camera);
+  const auto detection = static_cast<std::size_t>(used.detection);
+  const BallObservation& ball = pair.balls[camera_index][detection];
+  CenterObservation center{used.detection, ball.center_px, ball.covariance_px2};
+  const auto& shifts_px = pair.shift_px[camera_index];
+  if (!shifts_px.empty()) center.center_px -= shifts_px[detection];
+  const RigCamera& camera = CameraOf(setup, used.camera);
+  const double diameter_mm =
+      setup.body.rods[static_cast<std::size_t>(used.id.rod)].ball_diameter_mm;
   const auto sphere =
-      ProjectSphere(camera.model, camera.cam_from_world * p_in_world_mm, rod.ball_diameter_mm / 2);
+      ProjectSphere(camera.model, camera.cam_from_world * BallInWorld(setup.body, pose, used.id),
+                    diameter_mm / 2);
   if (sphere) center.center_px -= sphere->shift_px();
   return center;
 }
@@ -82,25 +100,12 @@ BallMeasurement* Find(PairMeasurement& measurement, const BallId& id) {
   return nullptr;
 }
 
-/// World position of a ball; with a free roll, `t` is the first ball and the axis carries the
-/// others.
-Eigen::Vector3d BallInWorld(const Body& body, const PoseEstimate& pose, const BallId& id) {
-  const auto& rod = body.rods[static_cast<std::size_t>(id.rod)];
-  const Eigen::Vector3d& p = rod.balls_in_body_mm[static_cast<std::size_t>(id.ball)];
-  if (!pose.free_axis_in_world) return pose.world_from_body * p;
-  return pose.world_from_body.rotation * (p - body.rods.front().balls_in_body_mm.front()) +
-         pose.world_from_body.translation_mm;
-}
-
-void AssignUsed(const MeasureSetup& setup, const PoseFix& fix, PairMeasurement& measurement) {
-  for (const BallAssignment& used : fix.used) {
+void AssignUsed(const MeasureSetup& setup, const TrackedPair& pair, PairMeasurement& measurement) {
+  for (const BallAssignment& used : pair.fix->used) {
     auto& list = used.camera == 0 ? measurement.left : measurement.right;
     MatchedDetection& detection = list[static_cast<std::size_t>(used.detection)];
     BallMeasurement* ball = Find(measurement, used.id);
-    const Rod& rod = setup.body.rods[static_cast<std::size_t>(used.id.rod)];
-    const CenterObservation center = ProjectedCenter(CameraOf(setup, used.camera), rod,
-                                                     BallInWorld(setup.body, fix.pose, used.id),
-                                                     detection.observation, used.detection);
+    const CenterObservation center = ProjectedCenter(setup, pair, used, pair.fix->pose);
     detection.id = used.id;
     detection.center_px = center.center_px;
     (used.camera == 0 ? ball->left : ball->right) = center;
@@ -109,23 +114,25 @@ void AssignUsed(const MeasureSetup& setup, const PoseFix& fix, PairMeasurement& 
 
 }  // namespace
 
-void ComposeMeasurement(const MeasureSetup& setup, const DetectedPair& pair,
-                        const Expected<PoseFix, PoseStatus>& fix, PairMeasurement& measurement) {
-  measurement.frame = pair.frames.left.index;
-  measurement.timestamp_ns = pair.frames.left.timestamp_ns;
+void ComposeMeasurement(const MeasureSetup& setup, const TrackedPair& pair,
+                        PairMeasurement& measurement) {
+  const auto& fix = pair.fix;
+  measurement.frame = pair.frame;
+  measurement.timestamp_ns = pair.timestamp_ns;
+  measurement.detail = pair.detail;
   measurement.status = fix ? PoseStatus::kOk : fix.error();
   measurement.pose.reset();
-  ListDetections(pair.left, measurement.left);
-  ListDetections(pair.right, measurement.right);
+  ListDetections(pair.balls[0], measurement.left);
+  ListDetections(pair.balls[1], measurement.right);
   ListBalls(setup.body, fix ? BallStatus::kNotSeen : BallStatus::kNoPose, measurement.balls);
   if (!fix) return;
   measurement.pose = fix->pose;
   if (setup.rig.covariance) {
     measurement.pose->calibration_u =
         CalibrationUncertainty(setup.rig, setup.left_camera, setup.right_camera, setup.body,
-                               pair.left, pair.right, fix->used, fix->pose);
+                               pair.balls[0], pair.balls[1], fix->used, fix->pose);
   }
-  AssignUsed(setup, *fix, measurement);
+  AssignUsed(setup, pair, measurement);
   for (BallMeasurement& ball : measurement.balls) {
     if (ball.left && ball.right) {
       MeasurePoint(setup, ball);

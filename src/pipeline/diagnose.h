@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ordered_pairs.h"
+#include "stereomotion/detection/ball_observation.h"
 #include "stereomotion/pipeline/measure.h"
 
 namespace stereomotion {

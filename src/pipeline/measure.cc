@@ -1,10 +1,12 @@
 #include "stereomotion/pipeline/measure.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <thread>
 
 #include "compose_measurement.h"
+#include "exposure_correction.h"
 #include "image_size.h"
 #include "learn_noise.h"
 #include "ordered_pairs.h"
@@ -16,6 +18,13 @@ namespace {
 
 constexpr std::int64_t kMostThreads = 256;
 
+void CheckMask(const ImageMask& mask, const RigCamera& camera) {
+  if (mask.empty()) return;
+  if (mask.width_px() != camera.width_px || mask.height_px() != camera.height_px) {
+    throw std::invalid_argument("MeasureRecording: a mask has not the size of its camera's images");
+  }
+}
+
 void CheckSetup(const PairSource& source, const MeasureSetup& setup,
                 const MeasureOptions& options) {
   const auto cameras = static_cast<int>(setup.rig.cameras.size());
@@ -25,6 +34,11 @@ void CheckSetup(const PairSource& source, const MeasureSetup& setup,
   }
   if (setup.body.rods.empty())
     throw std::invalid_argument("MeasureRecording needs a body with rods");
+  CheckMask(setup.left_mask, setup.rig.cameras[static_cast<std::size_t>(setup.left_camera)]);
+  CheckMask(setup.right_mask, setup.rig.cameras[static_cast<std::size_t>(setup.right_camera)]);
+  if (options.search_every < 1) {
+    throw std::invalid_argument("MeasureRecording: search_every must be 1 or more");
+  }
   if (options.first < 0 || options.first > source.size()) {
     throw std::invalid_argument("MeasureRecording: the first pair lies beyond the recording's end");
   }
@@ -54,16 +68,99 @@ Expected<PoseFix, PoseStatus> FindPose(const MeasureSetup& setup, const Detected
   return tracker.Track(pair.frames.left.timestamp_ns, pair.left, pair.right);
 }
 
-OrderedPairs::Settings MakeSettings(const MeasureOptions& options, const RunSummary& summary,
-                                    std::int64_t end) {
+OrderedPairs::Settings MakeSettings(const MeasureSetup& setup, const MeasureOptions& options,
+                                    const RunSummary& summary, std::int64_t end) {
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return {options.first,
-          end,
-          options.threads > 0 ? options.threads : cores,
-          summary.noise_left.noise,
-          summary.noise_right.noise,
-          options.detection};
+  const auto search = [&](const NoiseRecord& record, const ImageMask& mask) {
+    return SearchSettings{record.noise, options.detection, mask, options.search_every};
+  };
+  return {options.first, end, options.threads > 0 ? options.threads : cores,
+          search(summary.noise_left, setup.left_mask),
+          search(summary.noise_right, setup.right_mask)};
 }
+
+/// Tracks pair after pair and keeps those that tell a pose's motion: two before it, two after it.
+class Measurer {
+ public:
+  Measurer(const MeasureSetup& setup, const MeasureOptions& options, const MeasurementSink& sink,
+           RunSummary& summary)
+      : setup_(setup),
+        options_(options),
+        sink_(sink),
+        summary_(summary),
+        totals_(summary),
+        tracker_(setup.rig.cameras[static_cast<std::size_t>(setup.left_camera)],
+                 setup.rig.cameras[static_cast<std::size_t>(setup.right_camera)], setup.body,
+                 options.tracker) {}
+
+  /// Tracks the next pair; hands out the one that now has all its neighbours. False ends the run.
+  bool Take(DetectedPair& detected) {
+    stage_.LapMs();
+    TrackedPair& pair = At(taken_++);
+    pair.frame = detected.frames.left.index;
+    pair.timestamp_ns = detected.frames.left.timestamp_ns;
+    pair.exposure_s = {ExposureSeconds(detected.frames.left),
+                       ExposureSeconds(detected.frames.right)};
+    pair.read_ms = detected.read_ms;
+    pair.detect_ms = detected.detect_ms[0] + detected.detect_ms[1];
+    pair.searched_whole = detected.searched_whole;
+    pair.fix = FindPose(setup_, detected, tracker_, pair.detail);
+    pair.mean_world_from_body.reset();
+    if (pair.fix) pair.mean_world_from_body = BodyPlacement(setup_.body, pair.fix->pose);
+    pair.balls[0].swap(detected.left);
+    pair.balls[1].swap(detected.right);
+    summary_.stage_ms["pose"] += stage_.LapMs();
+    return taken_ <= kMotionReach || HandOut();
+  }
+
+  /// Hands out the pairs that have no more neighbours to wait for.
+  void TakeEnd() {
+    while (handed_out_ < taken_ && HandOut()) {
+    }
+  }
+
+  void Finish() { totals_.Finish(setup_, options_); }
+
+ private:
+  TrackedPair& At(std::int64_t number) {
+    return ring_[static_cast<std::size_t>(number) % ring_.size()];
+  }
+
+  [[nodiscard]] double ExposureSeconds(const Frame& frame) const {
+    constexpr double kSecondsPerUs = 1e-6;
+    return kSecondsPerUs * (frame.exposure_us > 0 ? frame.exposure_us : options_.exposure_us);
+  }
+
+  bool HandOut() {
+    stage_.LapMs();
+    PairNeighbours neighbours{};
+    for (std::int64_t i = 0; i < static_cast<std::int64_t>(neighbours.size()); ++i) {
+      const std::int64_t number = handed_out_ - kMotionReach + i;
+      if (number >= 0 && number < taken_) neighbours[static_cast<std::size_t>(i)] = &At(number);
+    }
+    TrackedPair& pair = At(handed_out_++);
+    const ExposureResult exposure =
+        CorrectForExposure(setup_, options_.tracker.acquire.pose, neighbours, pair);
+    ComposeMeasurement(setup_, pair, measurement_);
+    summary_.stage_ms["pose"] += stage_.LapMs();
+    totals_.Count(pair, exposure, measurement_);
+    stage_.LapMs();
+    const bool go_on = sink_(measurement_);
+    summary_.stage_ms["write"] += stage_.LapMs();
+    return go_on;
+  }
+
+  const MeasureSetup& setup_;
+  const MeasureOptions& options_;
+  const MeasurementSink& sink_;
+  RunSummary& summary_;
+  RunTotals totals_;
+  PoseTracker tracker_;
+  std::array<TrackedPair, 2 * kMotionReach + 1> ring_;
+  std::int64_t taken_ = 0, handed_out_ = 0;
+  PairMeasurement measurement_;
+  Stopwatch stage_;
+};
 
 }  // namespace
 
@@ -80,25 +177,16 @@ RunSummary MeasureRecording(const PairSource& source, const MeasureSetup& setup,
   LearnNoise(source, setup, options, end, summary);
   summary.stage_ms["learn_noise"] = stage.LapMs();
 
-  OrderedPairs pairs(source, MakeSettings(options, summary, end));
-  PoseTracker tracker(setup.rig.cameras[static_cast<std::size_t>(setup.left_camera)],
-                      setup.rig.cameras[static_cast<std::size_t>(setup.right_camera)], setup.body,
-                      options.tracker);
-  RunTotals totals(summary);
-  PairMeasurement measurement;
-  while (const DetectedPair* pair = pairs.Next()) {
-    stage.LapMs();
-    const auto fix = FindPose(setup, *pair, tracker, measurement.detail);
-    ComposeMeasurement(setup, *pair, fix, measurement);
-    summary.stage_ms["pose"] += stage.LapMs();
-    totals.Count(*pair, measurement);
-    stage.LapMs();
-    const bool go_on = sink(measurement);
-    summary.stage_ms["write"] += stage.LapMs();
+  OrderedPairs pairs(source, MakeSettings(setup, options, summary, end));
+  Measurer measurer(setup, options, sink, summary);
+  bool go_on = true;
+  while (DetectedPair* pair = go_on ? pairs.Next() : nullptr) {
+    go_on = measurer.Take(*pair);
     summary.interrupted = stop != nullptr && stop->load();
-    if (!go_on || summary.interrupted) break;
+    go_on = go_on && !summary.interrupted;
   }
-  totals.Finish(setup, options);
+  if (go_on) measurer.TakeEnd();
+  measurer.Finish();
   summary.elapsed_ms = total.LapMs();
   return summary;
 }

@@ -7,16 +7,12 @@
 namespace stereomotion {
 namespace {
 
-void ReadAndDetect(const PairSource& source, std::int64_t position, BallDetector& left,
-                   BallDetector& right, DetectedPair& pair) {
+void Search(CameraSearch& search, int camera, DetectedPair& pair) {
   Stopwatch watch;
-  source.Read(position, pair.frames);
-  pair.read_ms = watch.LapMs();
-  pair.left.clear();
-  pair.right.clear();
-  if (!pair.frames.left.image.empty()) left.Detect(pair.frames.left.image.View(), pair.left);
-  if (!pair.frames.right.image.empty()) right.Detect(pair.frames.right.image.View(), pair.right);
-  pair.detect_ms = watch.LapMs();
+  const auto index = static_cast<std::size_t>(camera);
+  pair.searched_whole[index] = camera == 0 ? search.Detect(pair.frames.left, pair.left)
+                                           : search.Detect(pair.frames.right, pair.right);
+  pair.detect_ms[index] = watch.LapMs();
 }
 
 }  // namespace
@@ -27,6 +23,10 @@ OrderedPairs::OrderedPairs(const PairSource& source, const Settings& settings)
       slots_(static_cast<std::size_t>(2 * settings.threads + 2)),
       next_to_start_(settings.first),
       next_to_hand_out_(settings.first) {
+  if (settings.left.search_every > 1) {
+    chains_.push_back({CameraSearch(settings.left), settings.first, false});
+    chains_.push_back({CameraSearch(settings.right), settings.first, false});
+  }
   for (int i = 0; i < std::max(settings.threads, 1); ++i) workers_.emplace_back([this] { Work(); });
 }
 
@@ -41,29 +41,74 @@ void OrderedPairs::Stop() {
   for (std::thread& worker : workers_) worker.join();
 }
 
-void OrderedPairs::Work() {
-  BallDetector left(settings_.noise_left, settings_.detection);
-  BallDetector right(settings_.noise_right, settings_.detection);
-  std::unique_lock<std::mutex> lock(mutex_);
+bool OrderedPairs::IsAllStarted() const {
+  return next_to_start_ >= settings_.end &&
+         std::all_of(chains_.begin(), chains_.end(),
+                     [&](const Chain& chain) { return chain.next >= settings_.end; });
+}
+
+std::optional<OrderedPairs::Task> OrderedPairs::NextTask() {
+  // Searches first: they free the slots that reading needs.
+  for (std::size_t camera = 0; camera < chains_.size(); ++camera) {
+    Chain& chain = chains_[camera];
+    if (chain.busy || chain.next >= next_to_start_ || !SlotOf(chain.next).read) continue;
+    chain.busy = true;
+    return Task{chain.next++, static_cast<int>(camera)};
+  }
   const auto capacity = static_cast<std::int64_t>(slots_.size());
+  const bool has_room = next_to_start_ < next_to_hand_out_ + capacity;
+  if (next_to_start_ >= settings_.end || !has_room) return std::nullopt;
+  return Task{next_to_start_++, -1};
+}
+
+void OrderedPairs::Perform(const Task& task, std::vector<CameraSearch>& own) {
+  DetectedPair& pair = SlotOf(task.position).pair;
+  if (task.camera >= 0) {
+    Search(chains_[static_cast<std::size_t>(task.camera)].search, task.camera, pair);
+    return;
+  }
+  Stopwatch watch;
+  source_.Read(task.position, pair.frames);
+  pair.read_ms = watch.LapMs();
+  for (std::size_t i = 0; i < own.size(); ++i) Search(own[i], static_cast<int>(i), pair);
+}
+
+void OrderedPairs::Finish(const Task& task) {
+  Slot& slot = SlotOf(task.position);
+  if (task.camera >= 0) {
+    slot.searched[static_cast<std::size_t>(task.camera)] = true;
+    chains_[static_cast<std::size_t>(task.camera)].busy = false;
+    return;
+  }
+  slot.read = true;
+  if (chains_.empty()) slot.searched = {true, true};
+}
+
+void OrderedPairs::Work() {
+  std::vector<CameraSearch> own;  // where no image depends on another
+  if (chains_.empty()) {
+    own.emplace_back(settings_.left);
+    own.emplace_back(settings_.right);
+  }
+  std::unique_lock<std::mutex> lock(mutex_);
   while (true) {
+    std::optional<Task> task;
     changed_.wait(lock, [&] {
-      return stop_ || next_to_start_ >= settings_.end ||
-             next_to_start_ < next_to_hand_out_ + capacity;
+      if (stop_ || error_ || IsAllStarted()) return true;
+      task = NextTask();
+      return task.has_value();
     });
-    if (stop_ || next_to_start_ >= settings_.end) return;
-    const std::int64_t position = next_to_start_++;
-    Slot& slot = SlotOf(position);
+    if (!task) return;
     lock.unlock();
     std::exception_ptr error;
     try {
-      ReadAndDetect(source_, position, left, right, slot.pair);
+      Perform(*task, own);
     } catch (...) {
       error = std::current_exception();
     }
     lock.lock();
     if (error && !error_) error_ = error;
-    slot.ready = true;
+    Finish(*task);
     changed_.notify_all();
   }
 }
@@ -71,14 +116,16 @@ void OrderedPairs::Work() {
 DetectedPair* OrderedPairs::Next() {
   std::unique_lock<std::mutex> lock(mutex_);
   if (handed_out_) {
-    SlotOf(next_to_hand_out_).ready = false;
+    Slot& done = SlotOf(next_to_hand_out_);
+    done.read = false;
+    done.searched = {};
     ++next_to_hand_out_;
     handed_out_ = false;
     changed_.notify_all();
   }
   if (next_to_hand_out_ >= settings_.end) return nullptr;
   Slot& slot = SlotOf(next_to_hand_out_);
-  changed_.wait(lock, [&] { return slot.ready || error_; });
+  changed_.wait(lock, [&] { return slot.ready() || error_; });
   if (error_) std::rethrow_exception(error_);
   handed_out_ = true;
   return &slot.pair;

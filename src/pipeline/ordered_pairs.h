@@ -1,16 +1,17 @@
 #pragma once
 
+#include <array>
 #include <condition_variable>
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
+#include "camera_search.h"
 #include "stereomotion/core/pair_source.h"
-#include "stereomotion/core/sensor_noise.h"
 #include "stereomotion/detection/ball_observation.h"
-#include "stereomotion/detection/detect_balls.h"
 
 namespace stereomotion {
 
@@ -20,21 +21,23 @@ struct DetectedPair {
   std::vector<BallObservation> left;
   std::vector<BallObservation> right;
   double read_ms = 0;
-  double detect_ms = 0;
+  std::array<double, 2> detect_ms{};     ///< left, right
+  std::array<bool, 2> searched_whole{};  ///< left, right
 };
 
 /// Reads pairs and detects their balls ahead on several threads; hands them out in order.
 ///
-/// A pair's result depends on that pair alone, so the number of threads changes nothing but the
-/// time. Holds a fixed number of pairs, whose memory is reused.
+/// Where every image is searched whole, a pair's result depends on that pair alone, and a thread
+/// does a pair. Else each camera's images are searched in their order, by whichever thread is free:
+/// so too the number of threads changes nothing but the time. Holds a fixed number of pairs, whose
+/// memory is reused.
 class OrderedPairs {
  public:
   struct Settings {
     std::int64_t first = 0;
     std::int64_t end = 0;  ///< one past the last position
     int threads = 1;
-    SensorNoise noise_left, noise_right;
-    DetectionOptions detection;
+    SearchSettings left, right;  ///< equal `search_every`
   };
   OrderedPairs(const PairSource& source, const Settings& settings);
   ~OrderedPairs();
@@ -48,10 +51,27 @@ class OrderedPairs {
  private:
   struct Slot {
     DetectedPair pair;
-    bool ready = false;
+    bool read = false;
+    std::array<bool, 2> searched{};
+    [[nodiscard]] bool ready() const { return read && searched[0] && searched[1]; }
+  };
+  /// One camera's searches, in order.
+  struct Chain {
+    CameraSearch search;
+    std::int64_t next = 0;
+    bool busy = false;
+  };
+  /// What a worker does next: reading a pair (`camera` −1), or searching one camera's image.
+  struct Task {
+    std::int64_t position = 0;
+    int camera = -1;
   };
   void Work();
   void Stop();
+  [[nodiscard]] bool IsAllStarted() const;
+  std::optional<Task> NextTask();
+  void Perform(const Task& task, std::vector<CameraSearch>& own);
+  void Finish(const Task& task);
   Slot& SlotOf(std::int64_t position) {
     return slots_[static_cast<std::size_t>(position) % slots_.size()];
   }
@@ -59,6 +79,7 @@ class OrderedPairs {
   const PairSource& source_;
   Settings settings_;
   std::vector<Slot> slots_;
+  std::vector<Chain> chains_;  ///< one a camera; empty where every image is searched whole
   std::vector<std::thread> workers_;
   std::mutex mutex_;
   std::condition_variable changed_;

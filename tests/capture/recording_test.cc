@@ -43,6 +43,20 @@ bool Contains(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
+TEST(Recording, ExposureOutOfRange) {
+  TemporaryFolder folder;
+  WriteImages(folder, "l", {1});
+  WriteImages(folder, "r", {1});
+  folder.Write("r/timestamps.csv", "frame,timestamp_ns\n1,0\n");
+  for (const char* exposure : {"-5", "nan", "inf", "1e300", "10000001"}) {
+    folder.Write("l/timestamps.csv",
+                 std::string("frame,timestamp_ns,exposure_us\n1,0,") + exposure);
+    EXPECT_TRUE(Contains(ErrorOf(folder), "timestamps.csv:2: found exposure_us ")) << exposure;
+  }
+  folder.Write("l/timestamps.csv", "frame,timestamp_ns,exposure_us\n1,0,10000000\n");
+  EXPECT_EQ(ErrorOf(folder), "no error");
+}
+
 TEST(Recording, PairsByTimeAndNaturalOrder) {
   TemporaryFolder folder;
   WriteImages(folder, "l", {9, 10, 11});
@@ -56,6 +70,8 @@ TEST(Recording, PairsByTimeAndNaturalOrder) {
   EXPECT_EQ(recording->report().unpaired_right, 0);
   EXPECT_TRUE(recording->report().paired_by_time);
   EXPECT_EQ(recording->report().warnings.size(), 1U);
+  EXPECT_EQ(recording->report().left_with_exposure, 2);
+  EXPECT_EQ(recording->report().right_with_exposure, 0);
   FramePair pair;
   recording->Read(0, pair);
   EXPECT_EQ(pair.left.index, 9);

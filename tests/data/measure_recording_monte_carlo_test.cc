@@ -72,7 +72,8 @@ Truth TruthOf(const Scenario& scenario) {
     for (const int camera : {0, 1}) {
       for (const BallTruth& ball : BallTruths(still, camera, t_s)) {
         true_frame.balls[static_cast<std::size_t>(camera)].push_back(
-            {ball.id, ball.p_in_world_mm, ball.center_px, ball.visible, ball.inside});
+            {ball.id, ball.p_in_world_mm, ball.center_px, ball.outline_px, ball.diameter_px,
+             ball.visible, ball.inside});
       }
     }
   }
@@ -81,7 +82,7 @@ Truth TruthOf(const Scenario& scenario) {
 
 RecordingRun MeasureSimulated(const Scenario& scenario) {
   RecordingRun run;
-  run.setup = {scenario.rig, 0, 1, scenario.body};
+  run.setup = {scenario.rig, 0, 1, scenario.body, {}, {}};
   run.truth = TruthOf(scenario);
   const SimulatedPairs source(
       scenario.frames, [&scenario](std::int64_t frame) { return ScenarioAt(scenario, frame); });

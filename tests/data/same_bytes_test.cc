@@ -24,7 +24,7 @@ FileBytes TrackDemo(int threads) {
   const fs::path folder =
       fs::path(::testing::TempDir()) / ("stereomotion_same_bytes_" + std::to_string(threads));
   const auto source = OpenRecording(demo / "cam0", demo / "cam1");
-  const MeasureSetup setup{ReadRig(demo / "rig.yaml"), 0, 1, ReadBody(demo / "body.yaml")};
+  const MeasureSetup setup{ReadRig(demo / "rig.yaml"), 0, 1, ReadBody(demo / "body.yaml"), {}, {}};
   MeasureOptions options;
   options.threads = threads;
   {

@@ -192,7 +192,7 @@ TEST_F(MeasureRecordingTest, BadFramesSayWhyAndTheRunGoesOn) {
 }
 
 /// The slots for pairs: two a worker and two more (ordered_pairs.h), however long the recording is
-/// and however slow the sink.
+/// and however slow the sink, which gets a pair two behind the one in hand.
 TEST_F(MeasureRecordingTest, HoldsAFixedNumberOfPairs) {
   GiveNoise();
   options_.threads = 3;
@@ -213,7 +213,7 @@ TEST_F(MeasureRecordingTest, HoldsAFixedNumberOfPairs) {
   });
   EXPECT_EQ(Measure(source).pairs_read, 500);
   EXPECT_LE(static_cast<std::int64_t>(objects.size()), kSlots);
-  EXPECT_LE(most_ahead, kSlots);
+  EXPECT_LE(most_ahead, kSlots + 2);
 }
 
 TEST_F(MeasureRecordingTest, SwappedCameras) {

@@ -23,10 +23,12 @@ struct RecordingOptions {
 struct RecordingReport {
   std::int64_t left_frames = 0;
   std::int64_t right_frames = 0;
-  std::int64_t pairs = 0;             ///< both images
-  std::int64_t unpaired_left = 0;     ///< delivered as pairs with `right.index == -1`
-  std::int64_t unpaired_right = 0;    ///< not delivered
-  bool paired_by_time = false;        ///< false: by position or frame number, without timestamps
+  std::int64_t pairs = 0;           ///< both images
+  std::int64_t unpaired_left = 0;   ///< delivered as pairs with `right.index == -1`
+  std::int64_t unpaired_right = 0;  ///< not delivered
+  bool paired_by_time = false;      ///< false: by position or frame number, without timestamps
+  /// Frames whose timestamps.csv tells how long they were exposed.
+  std::int64_t left_with_exposure = 0, right_with_exposure = 0;
   double period_s = 0;                ///< median time between frames; 0: a single frame
   std::vector<std::string> warnings;  ///< for a person
 };

@@ -62,8 +62,9 @@ class BallDetector {
   /// Finds balls in parts of the image only, against the background map of the last whole search;
   /// searches the whole image where there was none yet, or none of this size. Balls whose middles
   /// lie in a window are found as in a whole search, but for one that reaches more than 12 px out
-  /// of all windows; one that lies in two windows is given once. Windows may reach out of the
-  /// image. The expected balls start the fits.
+  /// of all windows, and for what the image's other balls tell about a covered one (rods, usual
+  /// size): balls outside the windows do not. One that lies in two windows is given once. Windows
+  /// may reach out of the image. The expected balls start the fits.
   void Detect(const ImageView& image, const std::vector<SearchWindow>& windows,
               std::vector<BallObservation>& balls);
 

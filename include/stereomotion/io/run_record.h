@@ -15,6 +15,13 @@ struct RunInput {
   std::string sha256;  ///< of the file, or of the images that were read (docs/formats.md)
 };
 
+/// Tells how much of a camera's images a mask covers.
+struct MaskRecord {
+  std::string camera;
+  int regions = 0;
+  std::int64_t pixels = 0;
+};
+
 /// Holds what run.json tells: how a RUN came about.
 struct RunRecord {
   std::string version;
@@ -27,6 +34,10 @@ struct RunRecord {
   std::int64_t unpaired_left = 0, unpaired_right = 0;
   bool paired_by_time = false;
   int threads = 0;
+  std::string detector;  ///< ml, wavelet, centroid
+  int search_every = 1;
+  double exposure_us = 0;  ///< given by the user for frames that do not tell theirs; 0: none
+  std::vector<MaskRecord> masks;
   RunSummary summary;
   std::vector<std::string> warnings;  ///< besides those of `summary`
 };

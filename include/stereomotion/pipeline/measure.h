@@ -7,6 +7,7 @@
 
 #include "stereomotion/camera/rig.h"
 #include "stereomotion/core/body.h"
+#include "stereomotion/core/image_mask.h"
 #include "stereomotion/core/pair_source.h"
 #include "stereomotion/core/run_summary.h"
 #include "stereomotion/detection/detect_balls.h"
@@ -21,13 +22,19 @@ struct MeasureSetup {
   int left_camera = 0;  ///< index into `rig.cameras`
   int right_camera = 1;
   Body body;
+  ImageMask left_mask, right_mask;  ///< of the cameras' image sizes; empty: none
 };
 
 struct MeasureOptions {
   DetectionOptions detection;
   TrackerOptions tracker;
-  int threads = 0;          ///< 0: as many as the machine has cores
-  int noise_pairs = 8;      ///< pairs from which the noise is learned before the run
+  int threads = 0;      ///< 0: as many as the machine has cores
+  int noise_pairs = 8;  ///< pairs from which the noise is learned before the run
+  /// Every how manyth image of a camera is searched whole; the others only where the balls seen
+  /// before should be. A ball that comes into sight is then found up to `search_every` − 1 images
+  /// late.
+  int search_every = 1;
+  double exposure_us = 0;   ///< of frames that do not tell theirs; 0: unknown
   std::int64_t first = 0;   ///< position of the first pair
   std::int64_t count = -1;  ///< −1: to the end
 };
@@ -36,7 +43,8 @@ struct MeasureOptions {
 using MeasurementSink = std::function<bool(const PairMeasurement&)>;
 
 /// Measures a recording: learn the noise → per pair read, detect (in parallel), track the pose,
-/// give every ball its 3D point, propagate the rig's covariance → `sink`, in frame order.
+/// move it to mid-exposure, give every ball its 3D point, propagate the rig's covariance → `sink`,
+/// in frame order, two pairs behind (a pose's motion is told by those around it).
 ///
 /// The measurements do not depend on `threads`. `stop` (may be null) ends the run after the pair in
 /// hand. Memory does not grow with the recording's length.

@@ -1,0 +1,79 @@
+#include "track_record.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <ctime>
+#include <filesystem>
+#include <thread>
+#include <tuple>
+
+#include "stereomotion/capture/sha256.h"
+#include "version.h"
+
+namespace stereomotion::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string UtcNow() {
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+void AddMask(const TrackInputs& inputs, int camera, const ImageMask& mask, RunRecord& record) {
+  if (mask.empty()) return;
+  MaskRecord& added = record.masks.emplace_back();
+  added.camera = inputs.setup.rig.cameras[static_cast<std::size_t>(camera)].name;
+  added.pixels = mask.CountMasked();
+  for (const CameraMask& one : inputs.masks) {
+    if (one.camera == added.camera) added.regions = static_cast<int>(one.regions.size());
+  }
+}
+
+}  // namespace
+
+RunRecord StartRecord(const TrackInputs& inputs, const TrackOptions& options,
+                      const CommonOptions& common) {
+  const RecordingReport& report = inputs.recording->report();
+  const auto& cameras = inputs.setup.rig.cameras;
+  RunRecord record;
+  record.version = kVersion;
+  record.command = common.command_line;
+  record.started = UtcNow();
+  record.left_camera = cameras[static_cast<std::size_t>(inputs.setup.left_camera)].name;
+  record.right_camera = cameras[static_cast<std::size_t>(inputs.setup.right_camera)].name;
+  record.left_frames = report.left_frames;
+  record.right_frames = report.right_frames;
+  record.unpaired_left = report.unpaired_left;
+  record.unpaired_right = report.unpaired_right;
+  record.paired_by_time = report.paired_by_time;
+  record.warnings = report.warnings;
+  record.warnings.insert(record.warnings.end(), inputs.warnings.begin(), inputs.warnings.end());
+  const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  record.detector = options.detector;
+  record.search_every = inputs.options.search_every;
+  record.exposure_us = inputs.options.exposure_us;
+  AddMask(inputs, inputs.setup.left_camera, inputs.setup.left_mask, record);
+  AddMask(inputs, inputs.setup.right_camera, inputs.setup.right_mask, record);
+  record.threads = inputs.options.threads > 0 ? inputs.options.threads : cores;
+  return record;
+}
+
+void AddInputs(const TrackOptions& options, const Recording& recording, RunRecord& record) {
+  record.inputs = {{"rig", options.rig, Sha256OfFile(options.rig)},
+                   {"body", options.body, Sha256OfFile(options.body)}};
+  if (!options.mask.empty()) {
+    record.inputs.push_back({"mask", options.mask, Sha256OfFile(options.mask)});
+  }
+  for (const auto& [side, role, path] :
+       {std::tuple{Side::kLeft, "left", options.left}, {Side::kRight, "right", options.right}}) {
+    const std::string images = recording.InputDigest(side);
+    if (!images.empty()) record.inputs.push_back({role, path, images});
+    for (const fs::path& file : recording.InputFiles(side)) {
+      record.inputs.push_back({role, file.string(), Sha256OfFile(file)});
+    }
+  }
+}
+
+}  // namespace stereomotion::app

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "commands.h"
+#include "stereomotion/io/run_record.h"
+#include "track_inputs.h"
+
+namespace stereomotion::app {
+
+/// Begins a run's record: program, command, recording, and how it is measured.
+RunRecord StartRecord(const TrackInputs& inputs, const TrackOptions& options,
+                      const CommonOptions& common);
+
+/// Lists the files that were read, with their check sums: at the end of the run, when those of the
+/// images are known.
+void AddInputs(const TrackOptions& options, const Recording& recording, RunRecord& record);
+
+}  // namespace stereomotion::app

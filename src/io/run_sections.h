@@ -1,0 +1,33 @@
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "stereomotion/io/run_report.h"
+
+namespace stereomotion {
+
+/// Computes the median of a number over the poses that a trace keeps; 0 where there are none.
+template <class Get>
+double MedianOf(const RunTrace& trace, const Get& get) {
+  std::vector<double> numbers;
+  for (const TracePoint& point : trace.points()) {
+    if (point.has_pose) numbers.push_back(get(point));
+  }
+  if (numbers.empty()) return 0;
+  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
+  std::nth_element(numbers.begin(), middle, numbers.end());
+  return *middle;
+}
+
+// Each writes one section of report.html; empty where there is nothing to show.
+std::string RunVerdictSection(const RunReport& report);
+std::string RunWarningsSection(const RunReport& report);
+std::string RunNumbersSection(const RunReport& report);
+std::string RunCourseSection(const RunReport& report);
+std::string RunPathSection(const RunReport& report);
+std::string RunCamerasSection(const RunReport& report);
+std::string RunInputsSection(const RunReport& report);
+
+}  // namespace stereomotion
