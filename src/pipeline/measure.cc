@@ -179,13 +179,12 @@ RunSummary MeasureRecording(const PairSource& source, const MeasureSetup& setup,
 
   OrderedPairs pairs(source, MakeSettings(setup, options, summary, end));
   Measurer measurer(setup, options, sink, summary);
-  bool go_on = true;
-  while (DetectedPair* pair = go_on ? pairs.Next() : nullptr) {
-    go_on = measurer.Take(*pair);
+  bool accepts = true;
+  while (DetectedPair* pair = accepts && !summary.interrupted ? pairs.Next() : nullptr) {
+    accepts = measurer.Take(*pair);
     summary.interrupted = stop != nullptr && stop->load();
-    go_on = go_on && !summary.interrupted;
   }
-  if (go_on) measurer.TakeEnd();
+  if (accepts) measurer.TakeEnd();  // also when interrupted: what was tracked is not lost
   measurer.Finish();
   summary.elapsed_ms = total.LapMs();
   return summary;

@@ -46,7 +46,7 @@ using MeasurementSink = std::function<bool(const PairMeasurement&)>;
 /// move it to mid-exposure, give every ball its 3D point, propagate the rig's covariance → `sink`,
 /// in frame order, two pairs behind (a pose's motion is told by those around it).
 ///
-/// The measurements do not depend on `threads`. `stop` (may be null) ends the run after the pair in
+/// The measurements do not depend on `threads`. `stop` (may be null) ends the run after the pairs in
 /// hand. Memory does not grow with the recording's length.
 RunSummary MeasureRecording(const PairSource& source, const MeasureSetup& setup,
                             const MeasureOptions& options, const MeasurementSink& sink,
