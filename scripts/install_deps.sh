@@ -10,7 +10,7 @@ set -euo pipefail
 packages=(
   ca-certificates g++ cmake ninja-build ccache python3 dpkg-dev file
   libeigen3-dev libopencv-dev libyaml-cpp-dev libtomlplusplus-dev nlohmann-json3-dev
-  libfmt-dev libspdlog-dev libcli11-dev libssl-dev zlib1g-dev libapriltag-dev
+  libfmt-dev libspdlog-dev libcli11-dev libssl-dev zlib1g-dev libapriltag-dev libceres-dev
   libgtest-dev libbenchmark-dev
 )
 for argument in "$@"; do
