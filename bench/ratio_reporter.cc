@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "stereomotion/core/median.h"
+
 namespace stereomotion::bench {
 namespace {
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Gives what stands between the slash and an underscore after it: hot or streaming.
 std::string GroupOf(const std::string& name) {

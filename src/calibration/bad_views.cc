@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "median.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {

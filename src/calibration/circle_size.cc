@@ -4,8 +4,8 @@
 #include <map>
 #include <tuple>
 
-#include "median.h"
 #include "predict_image.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-#include "median.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {

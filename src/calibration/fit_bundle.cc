@@ -5,7 +5,7 @@
 
 #include "bad_views.h"
 #include "bundle_normals.h"
-#include "median.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {

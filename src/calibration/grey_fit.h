@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "median.h"
 #include "stereomotion/core/image.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "median.h"
+#include "stereomotion/core/median.h"
 #include "stereomotion/detection/measure_ball.h"
 
 namespace stereomotion {

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "diagnose_calibration.h"
-#include "median.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "median.h"
 #include "stereomotion/calibration/intersect_rays.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {

@@ -4,8 +4,8 @@
 #include <iterator>
 #include <optional>
 
-#include "median.h"
 #include "relative_orientation.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {

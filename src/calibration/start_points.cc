@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "camera_pose.h"
-#include "median.h"
 #include "start_bundle.h"
 #include "stereomotion/calibration/dlt.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {

@@ -4,7 +4,9 @@
 
 #include "blob_measurer.h"
 #include "classify_blob.h"
+#include "image_border.h"
 #include "light_moments.h"
+#include "pixel_variance.h"
 
 namespace stereomotion {
 namespace {
@@ -29,7 +31,6 @@ constexpr double kSmallestFill = 0.9;
 
 /// Fills in the ellipse whose area and second moments the half-height pixels have.
 void CopyEllipse(const Blob& blob, BallObservation& ball) {
-  constexpr double kPixelVariance_px2 = 1.0 / 12;
   const double n = blob.area_px;
   const Eigen::Vector2d mean(blob.sum_u / n, blob.sum_v / n);
   const double uu = blob.sum_uu / n - mean.x() * mean.x() + kPixelVariance_px2;
@@ -90,10 +91,7 @@ bool CentroidMeasurer::LeaveOthersOut(const BlobScene& scene, const Blob& blob,
 }
 
 bool TouchesBorder(const ImageView& image, const LightWindow& window) {
-  const Eigen::Vector2d& c = window.center_px;
-  const double reach = window.radius_px;
-  return c.x() < reach || c.y() < reach || c.x() > image.width_px - 1 - reach ||
-         c.y() > image.height_px - 1 - reach;
+  return TouchesBorder(image, window.center_px, Eigen::Array2d::Constant(window.radius_px));
 }
 
 BlobStatus Judge(const BlobScene& scene, const Blob& blob, const BallObservation& ball,

@@ -6,9 +6,9 @@ namespace stereomotion {
 
 /// Computes the largest χ²/dof that noise alone reaches with probability 10^-exponent (Wilson &
 /// Hilferty 1931).
-inline double LargestChi2Dof(int dof, double exponent) {
+inline double LargestChi2Dof(double dof, double exponent) {
   const double z = std::sqrt(2 * exponent * std::log(10.0));
-  const double h = 2.0 / (9.0 * dof);
+  const double h = 2 / (9 * dof);
   return std::pow(1 - h + z * std::sqrt(h), 3);
 }
 

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chi2_limit.h"
+#include "image_border.h"
 #include "normal_distribution.h"
+#include "pixel_variance.h"
 
 namespace stereomotion {
 namespace {
 
-/// Pixel aperture, part of the fitted blur: a box of one pixel has variance 1/12.
-constexpr double kPixelVariance_px2 = 1.0 / 12.0;
 /// A blob thinner than this, by its moments, is a wire or a streak.
 constexpr double kThinnestAxisRatio = 0.25;
 /// A longer smear is rather a wire.
@@ -118,15 +119,7 @@ void CopyMoments(const Blob& blob, BallObservation& ball) {
 bool TouchesBorder(const ImageView& image, const BallObservation& ball) {
   // One pixel more than the outline: the blurred limb must lie inside as well.
   const Eigen::Array2d reach = ball.semi_major_px + 1 + 0.5 * ball.smear_px.array().abs();
-  const Eigen::Array2d last(image.width_px - 1, image.height_px - 1);
-  return (ball.center_px.array() < reach).any() || (ball.center_px.array() > last - reach).any();
-}
-
-/// Largest χ²/dof that noise alone reaches with probability 10^-exponent (Wilson & Hilferty 1931).
-double LargestChi2Dof(int dof, double exponent) {
-  const double z = std::sqrt(2 * exponent * std::log(10.0));
-  const double h = 2.0 / (9.0 * dof);
-  return std::pow(1 - h + z * std::sqrt(h), 3);
+  return TouchesBorder(image, ball.center_px, reach);
 }
 
 /// Height of the ball's image: a smear longer than the ball spreads its light.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pixel_variance.h"
+
 namespace stereomotion {
 namespace {
 
@@ -14,7 +16,6 @@ using P = BallModel;
 constexpr double kRoundest = 0.015;
 /// So far beyond it a stretch is no noise [σ].
 constexpr double kEvident_sigma = 4;
-constexpr double kPixelVariance_px2 = 1.0 / 12.0;
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ball_model.h"
+#include "pixel_variance.h"
 #include "robust_ball_fit.h"
 
 namespace stereomotion {
@@ -16,8 +17,6 @@ using P = BallModel;
 /// Background kept around the outline: the blur's tail and a ring that tells level and slopes.
 constexpr double kMargin_px = 4.5;
 constexpr double kThinnestRing_px = 1.5;  ///< holds a pixel in every direction
-/// Pixel aperture, part of the model's blur: a box of one pixel has variance 1/12.
-constexpr double kPixelVariance_px2 = 1.0 / 12.0;
 /// Limb shading of a usual ball; by symmetry it does not move the centre.
 constexpr double kUsualShading = 0.1;
 

@@ -6,13 +6,13 @@
 
 #include "multiversion.h"
 #include "normal_distribution.h"
+#include "pixel_variance.h"
 
 namespace stereomotion {
 namespace {
 
 using P = BallModel;
 
-constexpr double kPixelVariance_px2 = 1.0 / 12.0;
 constexpr double kUsualShading = 0.15;
 /// Light and second moment of a ball of that shading, against A R² π and R².
 constexpr double kLightShare = 1 - kUsualShading / 3;

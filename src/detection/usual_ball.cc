@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stereomotion/core/median.h"
+
 namespace stereomotion {
 namespace {
 
 /// Fewer balls than these show no spread; then it is taken as this share of the radius.
 constexpr std::size_t kFewest = 4;
 constexpr double kUnknownSpread = 0.05;
-
-double Median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -32,7 +28,7 @@ void BallShapes::Add(const BallModel& ball) {
 
 bool BallShapes::Find(UsualBall& usual) {
   if (radii_.empty()) return false;
-  usual = {Median(radii_), Median(blurs_), Median(amplitudes_)};
+  usual = {MedianInPlace(radii_), MedianInPlace(blurs_), MedianInPlace(amplitudes_)};
   double spread2_px2 = 0;
   for (const double radius_px : radii_) spread2_px2 += std::pow(radius_px - usual.radius_px, 2);
   usual.radius_spread_px = radii_.size() < kFewest

@@ -3,15 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chi2_limit.h"
+#include "image_border.h"
 #include "normal_distribution.h"
+#include "pixel_variance.h"
 #include "wavelet_radius.h"
 #include "wavelet_surround.h"
 
 namespace stereomotion {
 namespace {
 
-/// Pixel aperture, part of the edge's blur: a box of one pixel has variance 1/12.
-constexpr double kPixelVariance_px2 = 1.0 / 12.0;
 /// Less of the outline than this does not determine five numbers but by the model's small errors.
 constexpr double kSmallestVisibleShare = 0.42;
 /// Nor does a shorter arc: twice as wide as the reach of the coarse filter's sides, four σ each.
@@ -82,17 +83,7 @@ void CopyOutline(const Outline& outline, const Eigen::Vector2d& origin_px, BallO
 
 bool TouchesBorder(const ImageView& image, const BallObservation& ball) {
   // One pixel more than the outline: the blurred limb must lie inside as well.
-  const double reach_px = ball.semi_major_px + 1;
-  return ball.center_px.x() < reach_px || ball.center_px.y() < reach_px ||
-         ball.center_px.x() > image.width_px - 1 - reach_px ||
-         ball.center_px.y() > image.height_px - 1 - reach_px;
-}
-
-/// Largest χ²/dof that noise alone reaches with probability 10^-exponent (Wilson & Hilferty 1931).
-double LargestChi2Dof(double dof, double exponent) {
-  const double z = std::sqrt(2 * exponent * std::log(10.0));
-  const double h = 2 / (9 * dof);
-  return std::pow(1 - h + z * std::sqrt(h), 3);
+  return TouchesBorder(image, ball.center_px, Eigen::Array2d::Constant(ball.semi_major_px + 1));
 }
 
 bool IsArcTooShort(const Outline& outline) {

@@ -6,18 +6,13 @@
 #include <stdexcept>
 
 #include "report_verdict.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {
 
 // An image that fits this many times worse than the camera's usual one is looked at by a person.
 constexpr double kOutlying = 2;
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 bool Within(int index, std::size_t size) {
   return index >= 0 && static_cast<std::size_t>(index) < size;

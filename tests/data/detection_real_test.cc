@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "stereomotion/core/median.h"
 #include "stereomotion/detection/detect_balls.h"
 #include "stereomotion/detection/estimate_noise.h"
 #include "tests/support/number_table.h"
@@ -83,11 +84,6 @@ TEST_P(RealDotsTest, NearlyAllAreFoundUnaided) {
   fmt::print("camera {}: {} dots, {} found, {} measured\n", GetParam(), dots_.peer_px.size(), found,
              measured);
   EXPECT_GE(found, 0.95 * static_cast<double>(dots_.peer_px.size()));
-}
-
-double Median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
 }
 
 /// Issue 4, bar 4: half-shaded dots draw neither centre. The median, for in uneven paint with
