@@ -23,6 +23,7 @@ using Run = std::function<int(const CommonOptions&)>;
 // Each adds its subcommand with its options to `app`; the result runs it.
 Run AddCalibrateCommand(CLI::App& app);
 Run AddTrackCommand(CLI::App& app);
+Run AddAnalyseCommand(CLI::App& app);
 Run AddSimulateCommand(CLI::App& app);
 Run AddConvertCommand(CLI::App& app);
 Run AddPrintTargetCommand(CLI::App& app);

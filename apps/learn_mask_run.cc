@@ -8,6 +8,7 @@
 #include <cstdio>
 
 #include "progress.h"
+#include "stereomotion/core/user_error.h"
 #include "stereomotion/io/write_file.h"
 #include "stereomotion/pipeline/learn_mask.h"
 #include "stop_signal.h"
@@ -90,8 +91,12 @@ int Refuse(const MaskFailure& failure, const MaskOptions& options) {
 }
 
 std::string BodyText(const RunSummary& run) {
-  if (run.poses == 0) return "no pose found: either no body, or rig or body wrong";
-  return fmt::format("the body was found in {} of {} pairs", run.poses, run.pairs_read);
+  std::int64_t poses = 0;
+  for (const BodySummary& body : run.bodies) poses += body.poses;
+  if (poses == 0) return "no pose found: either no body, or rig or body wrong";
+  return fmt::format("{} in {} of {} pairs",
+                     run.bodies.size() == 1 ? "the body was found" : "all bodies were found",
+                     run.poses, run.pairs_read);
 }
 
 void Print(const std::vector<CameraMask>& masks, const std::string& body) {
@@ -115,6 +120,12 @@ Expected<LearnedMask, MaskFailure> Learn(const TrackInputs& inputs, const MaskOp
 
 int RunLearnMask(const TrackOptions& options, const TrackInputs& inputs,
                  const CommonOptions& common) {
+  if (options.bodies.empty()) {
+    throw UserError(
+        "--learn-mask: found no --body, expected the body that moves in the recording, so that it "
+        "is "
+        "not masked (any body file for a recording without bodies)");
+  }
   CheckMaskTarget(options, inputs);
   const MaskOptions mask_options;
   const std::atomic<bool>& stop = CatchStopSignals();

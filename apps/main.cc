@@ -67,6 +67,7 @@ int Main(int argc, char** argv) {
   options.command_line.assign(argv, argv + argc);
   const std::map<std::string, Run> commands = {{"calibrate", AddCalibrateCommand(app)},
                                                {"track", AddTrackCommand(app)},
+                                               {"analyse", AddAnalyseCommand(app)},
                                                {"simulate", AddSimulateCommand(app)},
                                                {"convert", AddConvertCommand(app)},
                                                {"print-target", AddPrintTargetCommand(app)}};

@@ -38,28 +38,34 @@ void RunStatistics::Add(const PairMeasurement& measurement) {
   rms_px_.push_back(pose.rms_px);
 }
 
-std::string RunStatistics::Table(const RunSummary& summary) const {
-  std::string table = Line("frame pairs", std::to_string(summary.pairs_read));
-  const double share = summary.pairs_read > 0 ? 100.0 * static_cast<double>(summary.poses) /
-                                                    static_cast<double>(summary.pairs_read)
-                                              : 0;
-  table += Line("poses", fmt::format("{} ({:.1f} %)", summary.poses, share));
-  for (const auto& [reason, count] : summary.lost_by_reason) {
-    table += Line(("  " + reason).c_str(), std::to_string(count));
+std::string RunStatistics::Rows(const BodySummary& body, std::int64_t pairs) const {
+  const double share =
+      pairs > 0 ? 100.0 * static_cast<double>(body.poses) / static_cast<double>(pairs) : 0;
+  std::string rows = Line("poses", fmt::format("{} ({:.1f} %)", body.poses, share));
+  for (const auto& [reason, count] : body.lost_by_reason) {
+    rows += Line(("  " + reason).c_str(), std::to_string(count));
   }
   if (!rms_px_.empty()) {
-    table +=
+    rows +=
         Line("sigma of position, median", fmt::format("{:.4f} mm", Median(translation_sigma_mm_)));
-    table += Line("sigma of rotation, median",
-                  fmt::format("{:.4f} deg", Median(rotation_sigma_rad_) * kDegreesPerRadian));
+    rows += Line("sigma of rotation, median",
+                 fmt::format("{:.4f} deg", Median(rotation_sigma_rad_) * kDegreesPerRadian));
     if (!calibration_mm_.empty()) {
-      table += Line("calibration part, median", fmt::format("{:.4f} mm", Median(calibration_mm_)));
+      rows += Line("calibration part, median", fmt::format("{:.4f} mm", Median(calibration_mm_)));
     }
-    table += Line("residual rms, median", fmt::format("{:.4f} px", Median(rms_px_)));
+    rows += Line("residual rms, median", fmt::format("{:.4f} px", Median(rms_px_)));
   }
-  if (summary.median_chi2_dof) {
-    table +=
-        Line("chi2 per dof, median", fmt::format("{:.2f} (1 is ideal)", *summary.median_chi2_dof));
+  if (body.median_chi2_dof) {
+    rows += Line("chi2 per dof, median", fmt::format("{:.2f} (1 is ideal)", *body.median_chi2_dof));
+  }
+  return rows;
+}
+
+std::string RunTable(const RunSummary& summary, const std::vector<RunStatistics>& bodies) {
+  std::string table = Line("frame pairs", std::to_string(summary.pairs_read));
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (bodies.size() > 1) table += summary.bodies[i].name + "\n";
+    table += bodies[i].Rows(summary.bodies[i], summary.pairs_read);
   }
   if (summary.elapsed_ms > 0) {
     table += Line("speed", fmt::format("{:.1f} pairs/s", static_cast<double>(summary.pairs_read) *

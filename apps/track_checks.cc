@@ -10,6 +10,7 @@
 
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/output_error.h"
+#include "stereomotion/pose/body_confusion.h"
 
 namespace stereomotion::app {
 namespace {
@@ -62,7 +63,54 @@ void AddMaskWarning(const ImageMask& mask, const RigCamera& camera, const std::s
                   100 * share, camera.name));
 }
 
+std::string RodNames(const Body& body, const BodyConfusion& found, bool first) {
+  std::string names;
+  for (const auto& rods : found.rods) {
+    const int rod = first ? rods.first : rods.second;
+    names += (names.empty() ? "" : " and ") + body.rods[static_cast<std::size_t>(rod)].name;
+  }
+  return fmt::format("{} {} of '{}'", found.rods.size() > 1 ? "rods" : "rod", names, body.name);
+}
+
+std::string ConfusionText(const Body& a, const Body& b, const BodyConfusion& found) {
+  return fmt::format(
+      "{} lie on {} within {:.2f} mm (swap margin: RMS distance of the balls after "
+      "the best alignment), expected at least {:.2f} mm",
+      RodNames(a, found, true), RodNames(b, found, false), found.margin_mm, found.needed_mm);
+}
+
+constexpr const char* kMakeThemDiffer =
+    "Thread the balls of one body at other distances, or put its rods at other places to each "
+    "other, and measure it again";
+
+// What one pair of bodies gives reason to warn of, or nothing.
+std::string CheckTwo(const Body& a, const Body& b) {
+  const auto whole = FindConfusion(a, b);
+  if (whole && whole->alike()) {
+    throw UserError(fmt::format("--body: the bodies '{}' and '{}' look alike: {}. {}", a.name,
+                                b.name, ConfusionText(a, b, *whole), kMakeThemDiffer));
+  }
+  const ConfusionOptions options;
+  const auto part = FindConfusion(a, b, options, options.rods.min_balls);
+  if (!part || !part->alike()) return "";
+  return fmt::format(
+      "the bodies '{}' and '{}' may be taken for each other where only {} balls a rod "
+      "are seen: of these, {}",
+      a.name, b.name, options.rods.min_balls, ConfusionText(a, b, *part));
+}
+
 }  // namespace
+
+std::vector<std::string> CheckBodiesDiffer(const std::vector<Body>& bodies) {
+  std::vector<std::string> warnings;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    for (std::size_t j = i + 1; j < bodies.size(); ++j) {
+      const std::string warning = CheckTwo(bodies[i], bodies[j]);
+      if (!warning.empty()) warnings.push_back(warning);
+    }
+  }
+  return warnings;
+}
 
 std::vector<std::string> ExposureWarnings(const RecordingReport& report, double exposure_ms) {
   if (!(exposure_ms > 0) || report.left_with_exposure + report.right_with_exposure == 0) return {};
@@ -96,7 +144,7 @@ void CheckMaskTarget(const TrackOptions& options, const TrackInputs& inputs) {
   std::error_code none;
   if (fs::exists(target, none)) {
     RefuseInput(target, options.rig);
-    RefuseInput(target, options.body);
+    for (const std::string& body : options.bodies) RefuseInput(target, body);
     for (const Side side : {Side::kLeft, Side::kRight}) {
       for (const fs::path& file : inputs.recording->InputFiles(side)) RefuseInput(target, file);
     }

@@ -1,133 +1,12 @@
-#include <fmt/chrono.h>
-#include <fmt/format.h>
-#include <spdlog/spdlog.h>
-
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
-#include <ctime>
 #include <memory>
-#include <optional>
 
 #include "commands.h"
-#include "learn_mask_run.h"
 #include "number_within.h"
-#include "progress.h"
-#include "run_statistics.h"
-#include "stereomotion/io/output_error.h"
-#include "stereomotion/io/run_report.h"
-#include "stereomotion/io/run_trace.h"
-#include "stereomotion/io/run_writer.h"
-#include "stereomotion/io/write_file.h"
-#include "stereomotion/pipeline/measure.h"
-#include "stop_signal.h"
 #include "track_inputs.h"
-#include "track_record.h"
+#include "track_run.h"
 
 namespace stereomotion::app {
 namespace {
-
-namespace fs = std::filesystem;
-
-constexpr std::int64_t kReasonsToTell = 3;
-
-std::string DefaultRunName() {
-  return fmt::format("run-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
-}
-
-// Measures into `writer`; a full disk ends the run early and is told by the result.
-std::optional<OutputError> Measure(const TrackInputs& inputs, const CommonOptions& common,
-                                   RunWriter& writer, RunStatistics& statistics, RunTrace& trace,
-                                   RunSummary& summary) {
-  const std::atomic<bool>& stop = CatchStopSignals();
-  const std::int64_t rest = inputs.recording->size() - inputs.options.first;
-  const std::int64_t wanted = inputs.options.count;
-  Progress progress(wanted < 0 ? rest : std::min(wanted, rest), common.quiet);
-  std::optional<OutputError> failure;
-  std::int64_t unreadable = 0;
-  const MeasurementSink sink = [&](const PairMeasurement& measurement) {
-    if (!measurement.detail.empty() && ++unreadable <= kReasonsToTell) {
-      progress.Clear();
-      spdlog::warn("frame {} is lost: {}{}", measurement.frame, measurement.detail,
-                   unreadable == kReasonsToTell ? " (more such frames are only counted)" : "");
-    }
-    try {
-      writer.Write(measurement);
-    } catch (const OutputError& error) {
-      failure = error;
-      return false;
-    }
-    statistics.Add(measurement);
-    trace.Add(measurement);
-    progress.Step();
-    return true;
-  };
-  summary = MeasureRecording(*inputs.recording, inputs.setup, inputs.options, sink, &stop);
-  return failure;
-}
-
-std::string MostFrequentLoss(const RunSummary& summary) {
-  std::string worst = "no frame pair was read";
-  std::int64_t most = 0;
-  for (const auto& [reason, count] : summary.lost_by_reason) {
-    if (count <= most) continue;
-    most = count;
-    worst = fmt::format("{} of {} pairs: {}", count, summary.pairs_read, reason);
-  }
-  return worst;
-}
-
-int Finish(const RunSummary& summary, const RunStatistics& statistics, const fs::path& folder,
-           const CommonOptions& common) {
-  for (const auto& warning : summary.warnings) spdlog::warn(warning);
-  if (summary.interrupted) spdlog::warn("interrupted: the files hold the pairs up to here");
-  if (!common.quiet) fmt::print("{}", statistics.Table(summary));
-  fmt::print("{}\n", folder.string());
-  if (summary.poses > 0 || summary.interrupted) return kDone;
-  fmt::print(stderr, "stereomotion: no pose in the whole recording ({}); see {}\n",
-             MostFrequentLoss(summary), (folder / "poses.csv").string());
-  return kNoAnswer;
-}
-
-void WriteReport(const TrackInputs& inputs, const RunRecord& record, const RunTrace& trace,
-                 const fs::path& folder) {
-  const auto& cameras = inputs.setup.rig.cameras;
-  const RunReport report{record, trace, cameras[static_cast<std::size_t>(inputs.setup.left_camera)],
-                         cameras[static_cast<std::size_t>(inputs.setup.right_camera)],
-                         inputs.masks};
-  WriteFileAtomically(folder / "report.html", RunHtml(report));
-}
-
-// The report first: `done` says that all files are there.
-void Conclude(const TrackInputs& inputs, const RunTrace& trace, const fs::path& folder,
-              std::optional<OutputError> failure, RunWriter& writer, RunRecord& record) {
-  record.state = record.summary.interrupted ? "interrupted" : "done";
-  try {
-    if (!failure) WriteReport(inputs, record, trace, folder);
-  } catch (const OutputError& error) {
-    failure = error;
-  }
-  if (failure) record.state = "output_failed";
-  writer.WriteRecord(record);
-  if (failure) throw OutputError(*failure);
-}
-
-int RunTrack(const TrackOptions& options, const CommonOptions& common) {
-  const TrackInputs inputs = LoadTrackInputs(options);
-  if (!options.learn_mask.empty()) return RunLearnMask(options, inputs, common);
-  RunRecord record = StartRecord(inputs, options, common);
-  const fs::path folder = options.output.empty() ? DefaultRunName() : options.output;
-  RunWriter writer(folder, {inputs.setup.body, record.left_camera, record.right_camera},
-                   options.force, record);
-  std::error_code ignored;
-  fs::remove(folder / "report.html", ignored);  // of an overwritten run
-  RunStatistics statistics;
-  RunTrace trace(inputs.setup.body);
-  const auto failure = Measure(inputs, common, writer, statistics, trace, record.summary);
-  AddInputs(options, *inputs.recording, record);
-  Conclude(inputs, trace, folder, failure, writer, record);
-  return Finish(record.summary, statistics, folder, common);
-}
 
 // What changes how the images are measured.
 void AddMeasuringOptions(CLI::App& track, TrackOptions& options) {
@@ -163,16 +42,32 @@ void AddMeasuringOptions(CLI::App& track, TrackOptions& options) {
       ->excludes(track.get_option("--output"));
 }
 
+// What is done before the measuring and after it.
+void AddBodyOptions(CLI::App& track, TrackOptions& options) {
+  constexpr double kSmallest_mm = 0.5, kLargest_mm = 500;  // as in a body file
+  track
+      .add_option("--ball-diameter-mm", options.ball_diameter_mm,
+                  "Without --body: diameter of the balls; by default as large as they look")
+      ->check(NumberWithin(kSmallest_mm, kLargest_mm))
+      ->excludes(track.get_option("--body"));
+  track.add_flag("!--no-motion", options.motion,
+                 "Do not work out the motion at the end (`analyse` does it later)");
+}
+
 }  // namespace
 
 Run AddTrackCommand(CLI::App& app) {
   auto options = std::make_shared<TrackOptions>();
-  CLI::App* track = app.add_subcommand("track", "Measures a body in recorded image pairs");
+  CLI::App* track = app.add_subcommand("track", "Measures bodies in recorded image pairs");
   track->add_option("--left", options->left, "Images of the left camera: folder, video or a name")
       ->required();
   track->add_option("--right", options->right, "Images of the right camera")->required();
   track->add_option("--rig", options->rig, "The calibrated cameras")->capture_default_str();
-  track->add_option("--body", options->body, "The body and its rods (body.yaml)");
+  track
+      ->add_option("--body", options->bodies,
+                   "A body and its rods (body.yaml); may be given several times. None: the bodies "
+                   "are learned from the recording")
+      ->allow_extra_args(false);
   track->add_option("--output", options->output,
                     "Folder for the results; run-DATE-TIME by default");
   track->add_option("--fps", options->fps, "Frames a second, where the recording has no times")
@@ -185,10 +80,13 @@ Run AddTrackCommand(CLI::App& app) {
       ->check(WholeNumberWithin(0, kMostThreads))
       ->capture_default_str();
   AddMeasuringOptions(*track, *options);
+  AddBodyOptions(*track, *options);
   track->add_flag("--force", options->force, "Overwrite an existing output");
   track->footer(
       "Examples:\n"
       "  stereomotion track --left rec/cam0 --right rec/cam1 --rig rec/rig.yaml --body body.yaml\n"
+      "  stereomotion track --left cam0 --right cam1 --body thigh.yaml --body shank.yaml\n"
+      "  stereomotion track --left cam0 --right cam1 --ball-diameter-mm 16\n"
       "  stereomotion track --left cam0 --right cam1 --body body.yaml --detector centroid\n"
       "  stereomotion track --left cam0 --right cam1 --body body.yaml --search-every 10\n"
       "  stereomotion track --left empty/cam0 --right empty/cam1 --body body.yaml --learn-mask "

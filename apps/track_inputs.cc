@@ -9,6 +9,7 @@
 #include "camera_argument.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/body_file.h"
+#include "stereomotion/io/body_folder.h"
 #include "stereomotion/io/rig_file.h"
 #include "track_checks.h"
 
@@ -28,14 +29,13 @@ Rig LoadRig(const TrackOptions& options) {
   return ReadRig(options.rig);
 }
 
-Body LoadBody(const TrackOptions& options) {
-  if (options.body.empty()) {
-    throw UserError(
-        "--body: missing, expected a body.yaml (an example is calib/body.yaml); measuring a body "
-        "of "
-        "unknown shape is not available yet");
-  }
-  return ReadBody(options.body);
+std::vector<Body> LoadBodies(const TrackOptions& options) {
+  std::vector<Body> bodies;
+  for (const std::string& file : options.bodies) bodies.push_back(ReadBody(file));
+  const std::string problem = BodyNameProblem(bodies);
+  if (!problem.empty())
+    throw UserError(fmt::format("{}: {}", fmt::join(options.bodies, ", "), problem));
+  return bodies;
 }
 
 // Fails early where the rig was calibrated for other images: every frame would be lost for it.
@@ -112,7 +112,7 @@ const std::vector<std::string>& DetectorNames() {
 TrackInputs LoadTrackInputs(const TrackOptions& options) {
   TrackInputs inputs;
   inputs.setup.rig = LoadRig(options);
-  inputs.setup.body = LoadBody(options);
+  inputs.setup.bodies = LoadBodies(options);
   const ResolvedCameras cameras =
       ResolveCameras(options.left, options.right, inputs.setup.rig, options.rig);
   inputs.setup.left_camera = cameras.left.rig_camera;
@@ -125,8 +125,10 @@ TrackInputs LoadTrackInputs(const TrackOptions& options) {
   CheckRange(options, inputs.recording->size());
   inputs.options = MakeOptions(options);
   LoadMasks(options, inputs);
-  const auto more = ExposureWarnings(report, options.exposure_ms);
-  inputs.warnings.insert(inputs.warnings.end(), more.begin(), more.end());
+  for (const auto& more :
+       {ExposureWarnings(report, options.exposure_ms), CheckBodiesDiffer(inputs.setup.bodies)}) {
+    inputs.warnings.insert(inputs.warnings.end(), more.begin(), more.end());
+  }
   for (const auto& warning : inputs.warnings) spdlog::warn(warning);
   CheckFirstImages(inputs, cameras, options);
   return inputs;

@@ -17,7 +17,7 @@ namespace stereomotion::app {
 struct TrackOptions {
   std::string left, right;
   std::string rig = "rig.yaml";
-  std::string body;
+  std::vector<std::string> bodies;  ///< files; none: learned from the recording
   std::string output;
   double fps = 0;
   std::int64_t start = 0;
@@ -25,13 +25,15 @@ struct TrackOptions {
   int threads = 0;
   std::string detector = "ml";
   std::int64_t search_every = 1;
-  double exposure_ms = 0;  ///< 0: as the recording tells
-  std::string mask;        ///< file; empty: none
-  std::string learn_mask;  ///< file to write instead of a RUN; empty: measure
+  double exposure_ms = 0;       ///< 0: as the recording tells
+  std::string mask;             ///< file; empty: none
+  std::string learn_mask;       ///< file to write instead of a RUN; empty: measure
+  double ball_diameter_mm = 0;  ///< of bodies to be learned; 0: from the images
+  bool motion = true;           ///< analyse it at the end
   bool force = false;
 };
 
-/// All that is read before the measuring starts.
+/// All that is known before the measuring starts.
 struct TrackInputs {
   MeasureSetup setup;
   std::vector<CameraMask> masks;

@@ -48,8 +48,6 @@ RunRecord StartRecord(const TrackInputs& inputs, const TrackOptions& options,
   record.unpaired_left = report.unpaired_left;
   record.unpaired_right = report.unpaired_right;
   record.paired_by_time = report.paired_by_time;
-  record.warnings = report.warnings;
-  record.warnings.insert(record.warnings.end(), inputs.warnings.begin(), inputs.warnings.end());
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   record.detector = options.detector;
   record.search_every = inputs.options.search_every;
@@ -60,9 +58,20 @@ RunRecord StartRecord(const TrackInputs& inputs, const TrackOptions& options,
   return record;
 }
 
+void AddBodies(const TrackInputs& inputs, const TrackOptions& options, RunRecord& record) {
+  record.bodies_learned = options.bodies.empty();
+  for (const Body& body : inputs.setup.bodies) {
+    record.bodies.push_back({body.name, inputs.setup.bodies.size() > 1 ? body.name : "."});
+  }
+  record.warnings = inputs.recording->report().warnings;
+  record.warnings.insert(record.warnings.end(), inputs.warnings.begin(), inputs.warnings.end());
+}
+
 void AddInputs(const TrackOptions& options, const Recording& recording, RunRecord& record) {
-  record.inputs = {{"rig", options.rig, Sha256OfFile(options.rig)},
-                   {"body", options.body, Sha256OfFile(options.body)}};
+  record.inputs = {{"rig", options.rig, Sha256OfFile(options.rig)}};
+  for (const std::string& body : options.bodies) {
+    record.inputs.push_back({"body", body, Sha256OfFile(body)});
+  }
   if (!options.mask.empty()) {
     record.inputs.push_back({"mask", options.mask, Sha256OfFile(options.mask)});
   }

@@ -10,6 +10,9 @@ namespace stereomotion::app {
 RunRecord StartRecord(const TrackInputs& inputs, const TrackOptions& options,
                       const CommonOptions& common);
 
+/// Adds the bodies that are measured, and the warnings so far.
+void AddBodies(const TrackInputs& inputs, const TrackOptions& options, RunRecord& record);
+
 /// Lists the files that were read, with their check sums: at the end of the run, when those of the
 /// images are known.
 void AddInputs(const TrackOptions& options, const Recording& recording, RunRecord& record);

@@ -73,8 +73,8 @@ struct TimedRun {
 
 TimedRun Measure(const PairSource& source, const MeasureSetup& setup, const Setting& setting) {
   const auto folder = std::filesystem::temp_directory_path() / "stereomotion_track_bench";
-  RunWriter writer(folder, {setup.body, "cam0", "cam1"}, true, {});
-  RunTrace trace(setup.body);
+  RunWriter writer(folder, {setup.bodies, "cam0", "cam1"}, true, {});
+  RunTrace trace(setup.bodies.front());
   MeasureOptions options;
   options.threads = kThreads;
   options.detection.method = setting.method;
@@ -121,7 +121,7 @@ int Run(std::int64_t pairs) {
       {"centroid, --search-every 10", DetectorMethod::kCentroid, 10}};
   const Scenario scenario = MakeScenario();
   const ToAndFro source(scenario, pairs);
-  const MeasureSetup setup{scenario.rig, 0, 1, scenario.body, {}, {}};
+  const MeasureSetup setup{scenario.rig, 0, 1, {scenario.body}, {}, {}};
   std::vector<std::vector<TimedRun>> runs(settings.size());
   for (int run = 0; run < kRuns; ++run) {
     for (std::size_t i = 0; i < settings.size(); ++i) {

@@ -43,10 +43,11 @@ declare -A studies=(
   [stereomotion_accuracy_study]="--output $results $quick"
   [stereomotion_exposure_study]="--output $results $quick"
   [stereomotion_edge_study]="--output $results"
+  [stereomotion_center_study]="--output $results $quick"
   [stereomotion_scaling_bench]="--output $results/scaling.csv"
 )
 order=(stereomotion_accuracy_study stereomotion_exposure_study stereomotion_edge_study
-  stereomotion_scaling_bench)
+  stereomotion_center_study stereomotion_scaling_bench)
 
 scripts/install_deps.sh
 stage "configure release" cmake --preset release

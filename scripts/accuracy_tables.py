@@ -13,6 +13,7 @@ from pathlib import Path
 
 from accuracy_bars import bars, knee_slope, knees
 from accuracy_data import METHODS, bias, read_rows, select, speed_slope
+from center_tables import center_parts, failed_center_bars
 
 
 def figure(value, form):
@@ -189,6 +190,10 @@ def main():
         own = load(folder, name + ".csv")
         if own:
             parts[name] = make(own)
+    centers = load(folder, "centers.csv")
+    parts.update(center_parts(centers))
+    for failed in failed_center_bars(centers):
+        print(f"does not hold: {failed}")
     for name, content in parts.items():
         text = replace(text, name, content)
     page.write_text(text, encoding="utf-8")

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from accuracy_data import METHODS, OWN, bias, read_rows, select
 from accuracy_figures import panels, save
+from plot_centers import draw_centers
 from plot_edges import draw_edges, draw_scaling
 from plot_exposure import draw_deviation, draw_exposure
 
@@ -106,6 +107,7 @@ def main():
                                                 target / "edge_snr.png"),
         "edge_localisation.csv": lambda rows: draw_edges(
             rows, "rms_px", "RMS distance from the edge [px]", target / "edge_localisation.png"),
+        "centers.csv": lambda rows: draw_centers(rows, target / "centers.png"),
         "scaling.csv": lambda rows: draw_scaling(rows, target / "scaling.png"),
     }
     for name, draw in plots.items():

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "body_parameters.h"
+#include "covariance_yaml.h"
 #include "stereomotion/core/user_error.h"
 #include "yaml_reader.h"
 
@@ -46,7 +48,7 @@ void CheckSpacing(const YamlReader& balls, const Rod& rod) {
 }
 
 // The line through the balls: their mean and the direction of largest spread.
-void CheckLine(const YamlReader& balls, const Rod& rod) {
+void CheckLine(const YamlReader& balls, const Rod& rod, double sigma_mm) {
   const auto& p = rod.balls_in_body_mm;
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const auto& ball : p) mean += ball / static_cast<double>(p.size());
@@ -55,7 +57,7 @@ void CheckLine(const YamlReader& balls, const Rod& rod) {
   const Eigen::Vector3d line =
       Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
   const double length_mm = std::abs(line.dot(p.back() - p.front()));
-  const double allowed_mm = std::max(kStraightness * length_mm, 5 * rod.sigma_mm);
+  const double allowed_mm = std::max(kStraightness * length_mm, 5 * sigma_mm);
   std::size_t worst = 0;
   double worst_mm = 0;
   for (std::size_t i = 0; i < p.size(); ++i) {
@@ -94,6 +96,21 @@ Rod ReadRod(const YamlReader& node) {
   return rod;
 }
 
+// A ball that the block does not name keeps its rod's sigma_mm.
+void ReadCovariance(const YamlReader& node, Body& body) {
+  const NamedCovariance named =
+      ReadNamedCovariance(node, BallParameterNames(body), "a coordinate of a ball");
+  Eigen::MatrixXd covariance_mm2 = CovarianceOfBalls(body);
+  for (std::size_t i = 0; i < named.places.size(); ++i) {
+    for (std::size_t j = 0; j < named.places.size(); ++j) {
+      covariance_mm2(static_cast<Eigen::Index>(named.places[i]),
+                     static_cast<Eigen::Index>(named.places[j])) =
+          named.matrix(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  }
+  body.covariance_mm2 = std::move(covariance_mm2);
+}
+
 void CheckExtent(const YamlReader& rods, const Body& body) {
   Eigen::Vector3d low = body.rods[0].balls_in_body_mm[0], high = low;
   for (const Rod& rod : body.rods) {
@@ -116,9 +133,6 @@ Body ReadBody(const std::filesystem::path& file) {
   if (format.Text() != "stereomotion-body/1") {
     format.Fail("'" + format.Text() + "'", "'stereomotion-body/1'");
   }
-  if (const auto covariance = root.Optional("covariance")) {
-    covariance->Fail("a covariance", "none: this version reads sigma_mm of each rod only");
-  }
   root.RequireKeys({"format", "name", "rods", "covariance"});
   Body body;
   if (const auto name = root.Optional("name")) body.name = name->Name();
@@ -134,11 +148,12 @@ Body ReadBody(const std::filesystem::path& file) {
     }
     body.rods.push_back(std::move(rod));
   }
+  if (const auto covariance = root.Optional("covariance")) ReadCovariance(*covariance, body);
   CheckExtent(rods, body);
   for (std::size_t i = 0; i < body.rods.size(); ++i) {
     const YamlReader balls = nodes[i].Required("balls_mm");
     CheckSpacing(balls, body.rods[i]);
-    CheckLine(balls, body.rods[i]);
+    CheckLine(balls, body.rods[i], std::max(body.rods[i].sigma_mm, LargestBallSigmaMm(body)));
   }
   return body;
 }

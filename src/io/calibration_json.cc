@@ -3,27 +3,12 @@
 #include <nlohmann/json.hpp>
 
 #include "calibration_json_parts.h"
+#include "json_text.h"
 
 namespace stereomotion {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-// What holds only numbers and words stands on one line: a residual, a row of a matrix. File names
-// need not be UTF-8; a name that is not must not cost the whole file.
-std::string Spell(const Json& json, const std::string& indent = "") {
-  bool nested = false;
-  for (const Json& child : json) nested = nested || (json.is_structured() && child.is_structured());
-  if (!nested) return json.dump(-1, ' ', false, Json::error_handler_t::replace);
-  const std::string inner = indent + "  ";
-  std::string text;
-  for (const auto& [key, child] : json.items()) {
-    text += (text.empty() ? "\n" : ",\n") + inner;
-    if (json.is_object()) text += Spell(Json(key)) + ": ";
-    text += Spell(child, inner);
-  }
-  return (json.is_object() ? "{" : "[") + text + "\n" + indent + (json.is_object() ? "}" : "]");
-}
 
 Json CrossValidationJson(const Calibration& calibration) {
   if (!calibration.cross_validation) return nullptr;
@@ -82,7 +67,7 @@ std::string CalibrationJson(const Calibration& calibration, const CalibrationSet
                      {"points", PointsJson(data)},
                      {"outliers", OutliersJson(data)},
                      {"residuals", ResidualsJson(data)}};
-  return Spell(json) + "\n";
+  return JsonText(json) + "\n";
 }
 
 }  // namespace stereomotion

@@ -2,75 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <iterator>
-
+#include "csv_row.h"
 #include "stereomotion/geometry/so3.h"
 #include "stereomotion/pose/status_words.h"
 
 namespace stereomotion {
 namespace {
 
-// Fills one row cell by cell.
-class Row {
- public:
-  explicit Row(std::string& rows) : rows_(rows) {}
-  Row& Text(std::string_view text) {
-    Separate();
-    if (text.find_first_of(",\"\r\n") == std::string_view::npos) {
-      rows_ += text;
-      return *this;
-    }
-    rows_ += '"';
-    for (const char c : text) rows_ += c == '"' ? std::string(2, c) : std::string(1, c);
-    rows_ += '"';
-    return *this;
-  }
-  Row& Integer(std::int64_t number) {
-    Separate();
-    fmt::format_to(std::back_inserter(rows_), "{}", number);
-    return *this;
-  }
-  // Adding 0 turns −0 into 0: two equal numbers have one spelling.
-  Row& Number(double number) {
-    Separate();
-    if (std::isfinite(number)) {
-      fmt::format_to(std::back_inserter(rows_), "{:.10g}", number + 0.0);
-    }
-    return *this;
-  }
-  Row& Empty(int cells = 1) {
-    for (int i = 0; i < cells; ++i) Separate();
-    return *this;
-  }
-  template <class Vector>
-  Row& Numbers(const Vector& numbers) {
-    for (Eigen::Index i = 0; i < numbers.size(); ++i) Number(numbers[i]);
-    return *this;
-  }
-  template <class Matrix>
-  Row& Upper(const Matrix& matrix) {
-    for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-      for (Eigen::Index j = i; j < matrix.cols(); ++j) Number(matrix(i, j));
-    }
-    return *this;
-  }
-  template <class Vector>
-  Row& NumbersOrEmpty(const std::optional<Vector>& numbers) {
-    return numbers ? Numbers(*numbers) : Empty(static_cast<int>(Vector::RowsAtCompileTime));
-  }
-  void End() { rows_ += '\n'; }
-
- private:
-  void Separate() {
-    if (!first_) rows_ += ',';
-    first_ = false;
-  }
-  std::string& rows_;
-  bool first_ = true;
-};
-
-void AppendCenter(const std::optional<CenterObservation>& center, Row& row) {
+void AppendCenter(const std::optional<CenterObservation>& center, CsvRow& row) {
   if (center) {
     row.Numbers(center->center_px).Upper(center->covariance_px2);
   } else {
@@ -81,7 +20,7 @@ void AppendCenter(const std::optional<CenterObservation>& center, Row& row) {
 void AppendDetection(std::int64_t frame, std::string_view camera, const MatchedDetection& detection,
                      const Body& body, std::string& rows) {
   const BallObservation& blob = detection.observation;
-  Row row(rows);
+  CsvRow row(rows);
   row.Integer(frame).Text(camera).Text(StatusWord(blob.status)).NumbersOrEmpty(detection.center_px);
   // A blob that was not measured has a rough place, but no uncertainty that would hold.
   if (blob.status == BlobStatus::kOk) {
@@ -131,7 +70,7 @@ std::string_view DetectionsHeader() {
 }
 
 void AppendPoseRow(const PairMeasurement& measurement, std::string& rows) {
-  Row row(rows);
+  CsvRow row(rows);
   row.Integer(measurement.frame).Integer(measurement.timestamp_ns);
   row.Text(StatusWord(measurement.status));
   if (!measurement.pose) {
@@ -149,7 +88,7 @@ void AppendPoseRow(const PairMeasurement& measurement, std::string& rows) {
 
 void AppendBallRows(const PairMeasurement& measurement, const Body& body, std::string& rows) {
   for (const BallMeasurement& ball : measurement.balls) {
-    Row row(rows);
+    CsvRow row(rows);
     row.Integer(measurement.frame);
     row.Text(body.rods.at(static_cast<std::size_t>(ball.id.rod)).name).Integer(ball.id.ball);
     row.Text(StatusWord(ball.status)).NumbersOrEmpty(ball.p_in_world_mm);

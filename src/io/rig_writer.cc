@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "covariance_yaml.h"
 #include "number_text.h"
 #include "stereomotion/geometry/so3.h"
 
@@ -74,23 +75,11 @@ std::string NoiseText(const Rig& rig) {
 
 std::string CovarianceText(const Rig& rig) {
   if (!rig.covariance || rig.covariance->parameters.empty()) return "";
-  const Eigen::MatrixXd& matrix = rig.covariance->matrix;
-  const auto n = static_cast<Eigen::Index>(rig.covariance->parameters.size());
-  if (matrix.rows() != n || matrix.cols() != n) {
-    throw std::invalid_argument("RigYaml: the covariance does not fit its parameters");
+  std::vector<std::string> names;
+  for (const RigParameter& parameter : rig.covariance->parameters) {
+    names.push_back(Word(RigParameterName(rig, parameter)));
   }
-  std::string text = "covariance:\n  parameters: [";
-  constexpr int kNamesALine = 5;
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (i > 0) text += i % kNamesALine == 0 ? ",\n               " : ", ";
-    text += Word(RigParameterName(rig, rig.covariance->parameters[static_cast<std::size_t>(i)]));
-  }
-  text += "]\n  upper: [";
-  for (Eigen::Index i = 0; i < n; ++i) {
-    if (i > 0) text += ",\n          ";
-    for (Eigen::Index j = i; j < n; ++j) text += (j > i ? ", " : "") + NumberText(matrix(i, j));
-  }
-  return text + "]\n";
+  return CovarianceYaml(names, rig.covariance->matrix);
 }
 
 std::string RecordText(const CalibrationRecord& record) {

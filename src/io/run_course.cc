@@ -129,14 +129,14 @@ std::string ResidualPlot(const RunTrace& trace) {
 
 }  // namespace
 
-std::string RunCourseSection(const RunReport& report) {
-  const RunTrace& trace = report.trace;
+std::string RunCourseSection(const RunReport& report, std::size_t body) {
+  const RunTrace& trace = *report.bodies[body].trace;
   if (FirstPose(trace) == nullptr) return "";
   const std::string thinned =
       trace.point_every() > 1
           ? "<p class=\"small\">Every " + Ordinal(trace.point_every()) + " pair is drawn.</p>\n"
           : "";
-  return "<section><h2>Course</h2>\n" + thinned + "<div class=\"figures\">\n" +
+  return "<section>" + BodyHeading(report, body, "Course") + thinned + "<div class=\"figures\">\n" +
          TranslationPlot(trace) + RotationPlot(trace) + ResidualPlot(trace) +
          ScalarPlot(trace, "Balls used", "balls, both images",
                     "Images of balls that carry the pose, of both cameras together.",

@@ -39,6 +39,27 @@ Json FramesJson(const RunRecord& record) {
           {"lost", lost}};
 }
 
+// Totals stand there from the end of the run on.
+Json BodiesJson(const RunRecord& record) {
+  Json bodies = Json::array();
+  for (std::size_t i = 0; i < record.bodies.size(); ++i) {
+    const BodyRecord& body = record.bodies[i];
+    const BodySummary total =
+        i < record.summary.bodies.size() ? record.summary.bodies[i] : BodySummary{};
+    Json lost = Json::object();
+    for (const auto& [reason, count] : total.lost_by_reason) lost[reason] = count;
+    const Json level =
+        total.median_chi2_dof ? Json(Rounded(*total.median_chi2_dof)) : Json(nullptr);
+    bodies.push_back({{"name", body.name},
+                      {"folder", body.folder},
+                      {"learned", record.bodies_learned},
+                      {"tracked", total.poses},
+                      {"lost", lost},
+                      {"median_chi2_dof", level}});
+  }
+  return bodies;
+}
+
 Json SearchJson(const RunRecord& record) {
   return {{"every", record.search_every},
           {"whole_left", record.summary.whole_searches_left},
@@ -88,6 +109,7 @@ std::string RunJson(const RunRecord& record) {
       {"inputs", InputsJson(record)},
       {"cameras", {{"left", record.left_camera}, {"right", record.right_camera}}},
       {"frames", FramesJson(record)},
+      {"bodies", BodiesJson(record)},
       {"detector", record.detector},
       {"search", SearchJson(record)},
       {"masks", MasksJson(record)},

@@ -21,12 +21,19 @@ double MedianOf(const RunTrace& trace, const Get& get) {
   return *middle;
 }
 
+/// Lists the totals of the bodies; where there is one, they are those of the run.
+std::vector<BodySummary> TotalsOfBodies(const RunReport& report);
+
+/// Heads a section about one body with its name, where there are several.
+std::string BodyHeading(const RunReport& report, std::size_t body, const std::string& heading);
+
 // Each writes one section of report.html; empty where there is nothing to show.
 std::string RunVerdictSection(const RunReport& report);
 std::string RunWarningsSection(const RunReport& report);
 std::string RunNumbersSection(const RunReport& report);
-std::string RunCourseSection(const RunReport& report);
-std::string RunPathSection(const RunReport& report);
+std::string RunMotionSection(const RunReport& report, std::size_t body);
+std::string RunCourseSection(const RunReport& report, std::size_t body);
+std::string RunPathSection(const RunReport& report, std::size_t body);
 std::string RunCamerasSection(const RunReport& report);
 std::string RunInputsSection(const RunReport& report);
 

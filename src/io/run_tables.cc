@@ -25,14 +25,18 @@ std::string Share(std::int64_t part, std::int64_t whole) {
   return Digits(100.0 * static_cast<double>(part) / static_cast<double>(whole), 3) + " %";
 }
 
-std::string PairsTable(const RunRecord& record) {
-  const RunSummary& summary = record.summary;
+std::string PairsTable(const RunReport& report) {
+  const RunSummary& summary = report.record.summary;
   HtmlTable table("lrr", {"frame pairs", "number", "share"});
   table.AddRow({"read", std::to_string(summary.pairs_read), ""});
-  table.AddRow(
-      {"with a pose", std::to_string(summary.poses), Share(summary.poses, summary.pairs_read)});
-  for (const auto& [reason, count] : summary.lost_by_reason) {
-    table.AddRow({Code(reason), std::to_string(count), Share(count, summary.pairs_read)}, "bad");
+  for (const BodySummary& body : TotalsOfBodies(report)) {
+    const std::string whose = report.bodies.size() > 1 ? EscapeHtml(body.name) + ": " : "";
+    table.AddRow(
+        {whose + "with a pose", std::to_string(body.poses), Share(body.poses, summary.pairs_read)});
+    for (const auto& [reason, count] : body.lost_by_reason) {
+      table.AddRow({whose + Code(reason), std::to_string(count), Share(count, summary.pairs_read)},
+                   "bad");
+    }
   }
   if (summary.poses_moved_to_mid_exposure > 0) {
     table.AddRow({"moved to mid-exposure", std::to_string(summary.poses_moved_to_mid_exposure),
@@ -80,11 +84,11 @@ std::string NoiseTable(const RunRecord& record) {
 std::string BlobTable(const RunReport& report) {
   std::set<std::string> words;
   for (const int camera : {0, 1}) {
-    for (const auto& [word, count] : report.trace.blobs(camera)) words.insert(word);
+    for (const auto& [word, count] : report.bodies.front().trace->blobs(camera)) words.insert(word);
   }
   if (words.empty()) return "";
   const auto count = [&](int camera, const std::string& word) {
-    const auto& blobs = report.trace.blobs(camera);
+    const auto& blobs = report.bodies.front().trace->blobs(camera);
     const auto found = blobs.find(word);
     return std::to_string(found == blobs.end() ? 0 : found->second);
   };
@@ -99,8 +103,8 @@ std::string BlobTable(const RunReport& report) {
 }  // namespace
 
 std::string RunNumbersSection(const RunReport& report) {
-  return "<section><h2>The run in numbers</h2>\n" + PairsTable(report.record) +
-         HowText(report.record) + BlobTable(report) + NoiseTable(report.record) + "</section>\n";
+  return "<section><h2>The run in numbers</h2>\n" + PairsTable(report) + HowText(report.record) +
+         BlobTable(report) + NoiseTable(report.record) + "</section>\n";
 }
 
 std::string RunInputsSection(const RunReport& report) {

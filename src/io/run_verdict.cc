@@ -13,9 +13,8 @@ constexpr double kDegreesPerRadian = 57.29577951308232;
 // Below, more was lost than a ball hidden now and then explains; below that, most of the motion.
 constexpr double kGoodShare = 0.95, kUsableShare = 0.5;
 
-double ShareOfPoses(const RunSummary& summary) {
-  if (summary.pairs_read == 0) return 0;
-  return static_cast<double>(summary.poses) / static_cast<double>(summary.pairs_read);
+double ShareOfPoses(const BodySummary& body, std::int64_t pairs) {
+  return pairs == 0 ? 0 : static_cast<double>(body.poses) / static_cast<double>(pairs);
 }
 
 std::vector<std::string> AllWarnings(const RunRecord& record) {
@@ -25,29 +24,39 @@ std::vector<std::string> AllWarnings(const RunRecord& record) {
 }
 
 // Few poses reach a high level by chance.
-bool Exceeds(const RunSummary& summary, double limit) {
-  return summary.median_chi2_dof &&
-         *summary.median_chi2_dof >= std::max(limit, summary.chi2_dof_by_chance);
+bool Exceeds(const BodySummary& body, double limit) {
+  return body.median_chi2_dof && *body.median_chi2_dof >= std::max(limit, body.chi2_dof_by_chance);
 }
 
-// The class of the page's style, and the words.
-std::pair<const char*, const char*> Judge(const RunRecord& record) {
-  const RunSummary& summary = record.summary;
-  if (summary.poses == 0) return {"doubtful", "No pose was found"};
-  if (Exceeds(summary, kDoubtfulChi2Dof) || ShareOfPoses(summary) < kUsableShare) {
+// The class of the page's style, and the words; of several bodies the worst decides.
+std::pair<const char*, const char*> Judge(const RunReport& report) {
+  const std::int64_t pairs = report.record.summary.pairs_read;
+  const std::vector<BodySummary> bodies = TotalsOfBodies(report);
+  const auto any = [&](const auto& is_so) {
+    return std::any_of(bodies.begin(), bodies.end(), is_so);
+  };
+  const auto below = [&](double share) {
+    return any([=](const BodySummary& body) { return ShareOfPoses(body, pairs) < share; });
+  };
+  const auto exceeds = [&](double limit) {
+    return any([=](const BodySummary& body) { return Exceeds(body, limit); });
+  };
+  if (!any([](const BodySummary& body) { return body.poses > 0; })) {
+    return {"doubtful", "No pose was found"};
+  }
+  if (exceeds(kDoubtfulChi2Dof) || below(kUsableShare)) {
     return {"doubtful", "Doubtful: read the warnings before you use it"};
   }
-  if (ShareOfPoses(summary) < kGoodShare || Exceeds(summary, kRemarkableChi2Dof) ||
-      !AllWarnings(record).empty()) {
+  if (below(kGoodShare) || exceeds(kRemarkableChi2Dof) || !AllWarnings(report.record).empty()) {
     return {"usable_with_warnings", "Usable, with warnings"};
   }
   return {"good", "Good"};
 }
 
-std::string FoundSentence(const RunSummary& summary) {
-  return fmt::format("The body's pose was found in {} of {} ({} %).", summary.poses,
-                     Counted(summary.pairs_read, "frame pair"),
-                     Digits(100 * ShareOfPoses(summary), 3));
+std::string FoundSentence(const BodySummary& body, std::int64_t pairs) {
+  return fmt::format("{} pose was found in {} of {} ({} %).",
+                     body.name.empty() ? "The body's" : body.name + ": the", body.poses,
+                     Counted(pairs, "frame pair"), Digits(100 * ShareOfPoses(body, pairs), 3));
 }
 
 std::string SigmaSentence(const RunTrace& trace) {
@@ -67,7 +76,7 @@ std::string SigmaSentence(const RunTrace& trace) {
           : "The rig states no covariance, so the calibration's part is not known.");
 }
 
-std::string FitSentence(const RunSummary& summary) {
+std::string FitSentence(const BodySummary& summary) {
   const std::string level =
       fmt::format("χ² per degree of freedom {}, 1 is ideal", Digits(*summary.median_chi2_dof, 2));
   if (!Exceeds(summary, kRemarkableChi2Dof)) {
@@ -83,13 +92,19 @@ std::string FitSentence(const RunSummary& summary) {
 }  // namespace
 
 std::string RunVerdictSection(const RunReport& report) {
-  const RunSummary& summary = report.record.summary;
-  const auto [name, words] = Judge(report.record);
+  const auto [name, words] = Judge(report);
   std::string text =
       fmt::format("<section class=\"verdict {}\"><p class=\"level\">{}</p>\n<ul>\n", name, words);
-  text += "<li>" + EscapeHtml(FoundSentence(summary)) + "</li>\n";
-  if (summary.poses > 0) text += "<li>" + EscapeHtml(SigmaSentence(report.trace)) + "</li>\n";
-  if (summary.median_chi2_dof) text += "<li>" + EscapeHtml(FitSentence(summary)) + "</li>\n";
+  const std::vector<BodySummary> totals = TotalsOfBodies(report);
+  for (std::size_t i = 0; i < report.bodies.size(); ++i) {
+    const BodySummary& body = totals[i];
+    const auto add = [&](const std::string& item) {
+      text += "<li>" + EscapeHtml(item) + "</li>\n";
+    };
+    add(FoundSentence(body, report.record.summary.pairs_read));
+    if (body.poses > 0) add(SigmaSentence(*report.bodies[i].trace));
+    if (body.median_chi2_dof) add(FitSentence(body));
+  }
   if (report.record.state == "interrupted") {
     text += "<li>The run was interrupted: the page shows the pairs up to there.</li>\n";
   }

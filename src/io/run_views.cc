@@ -124,7 +124,7 @@ std::string ImageFigure(const RunReport& report, int camera) {
   const double height = kPlot * of.height_px / of.width_px;
   const Axes axes({-0.5, of.width_px - 0.5}, {of.height_px - 0.5, -0.5},
                   {kLeft, kTop, kPlot, height});
-  const auto& dots = report.trace.dots(camera);
+  const auto& dots = report.bodies.front().trace->dots(camera);
   // Polygons may reach over the image's border.
   const std::string clip = fmt::format(
       "<clipPath id=\"image{}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>\n"
@@ -139,8 +139,8 @@ std::string ImageFigure(const RunReport& report, int camera) {
 
 }  // namespace
 
-std::string RunPathSection(const RunReport& report) {
-  const Scene scene = MakeScene(report.trace);
+std::string RunPathSection(const RunReport& report, std::size_t body) {
+  const Scene scene = MakeScene(*report.bodies[body].trace);
   if (scene.path.empty()) return "";
   double size = 0;
   for (const Eigen::Index axis : {0, 1, 2}) {
@@ -148,7 +148,8 @@ std::string RunPathSection(const RunReport& report) {
     size = std::max(size, range.high - range.low);
   }
   std::string text =
-      "<section><h2>Path</h2>\n<p>Line: the path of the balls' middle. Circles: the balls at the "
+      "<section>" + BodyHeading(report, body, "Path") +
+      "<p>Line: the path of the balls' middle. Circles: the balls at the "
       "first pose, dots: at the last. World coordinates, all views on one scale.</p>\n"
       "<div class=\"figures\">\n";
   for (const View& view : kViews) text += DrawView(scene, view, size);

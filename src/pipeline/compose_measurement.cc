@@ -35,10 +35,10 @@ CenterObservation ProjectedCenter(const MeasureSetup& setup, const TrackedPair& 
   if (!shifts_px.empty()) center.center_px -= shifts_px[detection];
   const RigCamera& camera = CameraOf(setup, used.camera);
   const double diameter_mm =
-      setup.body.rods[static_cast<std::size_t>(used.id.rod)].ball_diameter_mm;
-  const auto sphere =
-      ProjectSphere(camera.model, camera.cam_from_world * BallInWorld(setup.body, pose, used.id),
-                    diameter_mm / 2);
+      BodyOf(setup, pair).rods[static_cast<std::size_t>(used.id.rod)].ball_diameter_mm;
+  const auto sphere = ProjectSphere(
+      camera.model, camera.cam_from_world * BallInWorld(BodyOf(setup, pair), pose, used.id),
+      diameter_mm / 2);
   if (sphere) center.center_px -= sphere->shift_px();
   return center;
 }
@@ -117,6 +117,7 @@ void AssignUsed(const MeasureSetup& setup, const TrackedPair& pair, PairMeasurem
 void ComposeMeasurement(const MeasureSetup& setup, const TrackedPair& pair,
                         PairMeasurement& measurement) {
   const auto& fix = pair.fix;
+  measurement.body = pair.body;
   measurement.frame = pair.frame;
   measurement.timestamp_ns = pair.timestamp_ns;
   measurement.detail = pair.detail;
@@ -124,13 +125,14 @@ void ComposeMeasurement(const MeasureSetup& setup, const TrackedPair& pair,
   measurement.pose.reset();
   ListDetections(pair.balls[0], measurement.left);
   ListDetections(pair.balls[1], measurement.right);
-  ListBalls(setup.body, fix ? BallStatus::kNotSeen : BallStatus::kNoPose, measurement.balls);
+  ListBalls(BodyOf(setup, pair), fix ? BallStatus::kNotSeen : BallStatus::kNoPose,
+            measurement.balls);
   if (!fix) return;
   measurement.pose = fix->pose;
   if (setup.rig.covariance) {
-    measurement.pose->calibration_u =
-        CalibrationUncertainty(setup.rig, setup.left_camera, setup.right_camera, setup.body,
-                               pair.balls[0], pair.balls[1], fix->used, fix->pose);
+    measurement.pose->calibration_u = CalibrationUncertainty(
+        setup.rig, setup.left_camera, setup.right_camera, BodyOf(setup, pair), pair.balls[0],
+        pair.balls[1], fix->used, fix->pose);
   }
   AssignUsed(setup, pair, measurement);
   for (BallMeasurement& ball : measurement.balls) {

@@ -56,8 +56,8 @@ std::string Count(std::size_t n, const char* what) { return std::to_string(n) + 
 
 }  // namespace
 
-std::string DiagnoseFailure(const MeasureSetup& setup, const MeasureOptions& options,
-                            const std::vector<FailedPair>& pairs) {
+std::string DiagnoseFailure(const MeasureSetup& setup, const Body& body,
+                            const MeasureOptions& options, const std::vector<FailedPair>& pairs) {
   const RigCamera& left = CameraAt(setup, setup.left_camera);
   const RigCamera& right = CameraAt(setup, setup.right_camera);
   std::size_t seen_left = 0;
@@ -72,14 +72,14 @@ std::string DiagnoseFailure(const MeasureSetup& setup, const MeasureOptions& opt
   }
   // Swapped on purpose: would the exchanged cameras do better?
   // NOLINTNEXTLINE(readability-suspicious-call-argument)
-  if (AnyPose(right, left, setup.body, pairs, options.tracker.acquire))
+  if (AnyPose(right, left, body, pairs, options.tracker.acquire))
     return SwappedMessage(left, right);
   for (const double factor : {1000.0, 0.001, 10.0, 0.1, 25.4}) {
-    if (!AnyPose(left, right, Scaled(setup.body, factor), pairs, options.tracker.acquire)) continue;
+    if (!AnyPose(left, right, Scaled(body, factor), pairs, options.tracker.acquire)) continue;
     return "the body file's lengths are in the wrong unit: multiplied by " + Short(factor) +
            " they fit the images (lengths are in millimetres)";
   }
-  const double radius_mm = setup.body.rods.front().ball_diameter_mm / 2;
+  const double radius_mm = body.rods.front().ball_diameter_mm / 2;
   const MatchOptions& match = options.tracker.acquire.match;
   const std::size_t found = CountCandidates(left, right, radius_mm, pairs, match);
   // NOLINTNEXTLINE(readability-suspicious-call-argument)

@@ -15,9 +15,10 @@ struct FailedPair {
   std::vector<BallObservation> right;
 };
 
-/// Looks for the reason why no pair of a run gave a pose: nothing detected, cameras swapped, wrong
-/// units in the body file, a rig that does not fit. One sentence for a person, with what to do.
-std::string DiagnoseFailure(const MeasureSetup& setup, const MeasureOptions& options,
-                            const std::vector<FailedPair>& pairs);
+/// Looks for the reason why no pair of a run gave a pose of `body`: nothing detected, cameras
+/// swapped, wrong units in the body file, a rig that does not fit. One sentence for a person, with
+/// what to do.
+std::string DiagnoseFailure(const MeasureSetup& setup, const Body& body,
+                            const MeasureOptions& options, const std::vector<FailedPair>& pairs);
 
 }  // namespace stereomotion

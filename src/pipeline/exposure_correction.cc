@@ -87,8 +87,9 @@ bool FindShifts(const MeasureSetup& setup, const LocalMotion& motion, TrackedPai
   }
   for (const BallAssignment& used : pair.fix->used) {
     const auto camera = static_cast<std::size_t>(used.camera);
-    const auto shift_px = MeanShift(CameraOf(setup, used.camera), motion,
-                                    BallInBody(setup.body, used.id), pair.exposure_s[camera]);
+    const auto shift_px =
+        MeanShift(CameraOf(setup, used.camera), motion, BallInBody(BodyOf(setup, pair), used.id),
+                  pair.exposure_s[camera]);
     if (!shift_px) continue;
     pair.shift_px[camera][static_cast<std::size_t>(used.detection)] = *shift_px;
     const Eigen::Matrix2d& covariance_px2 = Used(pair, used).covariance_px2;
@@ -136,9 +137,10 @@ std::vector<BallObservation> Corrected(const TrackedPair& pair, std::size_t came
 ExposureResult EstimateAgain(const MeasureSetup& setup, const PoseOptions& options,
                              const LocalMotion& motion, TrackedPair& pair) {
   std::vector<BallAssignment> used;
-  const auto pose = EstimatePose(CameraOf(setup, 0), CameraOf(setup, 1), setup.body,
-                                 Corrected(pair, 0), Corrected(pair, 1), pair.fix->used,
-                                 BodyPlacement(setup.body, pair.fix->pose), options, &used);
+  const auto pose =
+      EstimatePose(CameraOf(setup, 0), CameraOf(setup, 1), BodyOf(setup, pair), Corrected(pair, 0),
+                   Corrected(pair, 1), pair.fix->used,
+                   BodyPlacement(BodyOf(setup, pair), pair.fix->pose), options, &used);
   if (!pose) return ExposureResult::kUnknownMotion;
   pair.fix->pose = *pose;
   pair.fix->pose.covariance *= NoiseGrowth(motion, pair);
@@ -158,7 +160,8 @@ ExposureResult CorrectForExposure(const MeasureSetup& setup, const PoseOptions& 
     return smeared ? ExposureResult::kUnknownTime : ExposureResult::kNegligible;
   }
   if (IsImpossible(neighbours, pair)) return ExposureResult::kImpossibleTime;
-  const auto motion = FitLocalMotion(NearestPlacements(neighbours, pair), Centroid(setup.body));
+  const auto motion =
+      FitLocalMotion(NearestPlacements(neighbours, pair), Centroid(BodyOf(setup, pair)));
   ExposureResult result = smeared ? ExposureResult::kUnknownMotion : ExposureResult::kNegligible;
   if (motion) {
     result = FindShifts(setup, *motion, pair) ? EstimateAgain(setup, options, *motion, pair)

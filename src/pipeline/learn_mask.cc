@@ -36,14 +36,17 @@ std::vector<std::int64_t> SpreadPositions(std::int64_t first, std::int64_t size,
   return positions;
 }
 
-std::vector<BodyBall> BallsOfBody(const std::vector<MatchedDetection>& detections) {
-  std::vector<BodyBall> balls;
+void AddBallsOfBody(const std::vector<MatchedDetection>& detections, std::vector<BodyBall>& balls) {
   for (const MatchedDetection& detection : detections) {
     if (detection.id.rod < 0) continue;
     const BallObservation& ball = detection.observation;
     balls.push_back({ball.center_px, ball.semi_major_px + kSkirt_px});
   }
-  return balls;
+}
+
+void AddBallsOfBody(const PairMeasurement& measurement, BodyBalls& balls) {
+  AddBallsOfBody(measurement.left, balls[0]);
+  AddBallsOfBody(measurement.right, balls[1]);
 }
 
 BallCenters WholeBalls(const std::vector<MatchedDetection>& detections) {
@@ -55,26 +58,33 @@ BallCenters WholeBalls(const std::vector<MatchedDetection>& detections) {
   return centers_px;
 }
 
+void AddWholeBalls(const PairMeasurement& measurement, SeenBalls& seen) {
+  seen.whole_px[0].push_back(WholeBalls(measurement.left));
+  seen.whole_px[1].push_back(WholeBalls(measurement.right));
+}
+
 /// Measures the recording; tells where balls are in the chosen pairs.
 RunSummary FindBody(const PairSource& source, const MeasureSetup& setup,
                     const MeasureOptions& options, const std::vector<std::int64_t>& positions,
                     SeenBalls& seen, const std::function<void()>& each_pair,
                     const std::atomic<bool>* stop) {
   std::int64_t position = options.first;
+  std::size_t next = 0;  // of `positions`
+  bool wanted = false;
+  seen.body.resize(positions.size());
   const MeasurementSink sink = [&](const PairMeasurement& measurement) {
-    const std::size_t next = seen.body.size();
-    if (next < positions.size() && positions[next] == position) {
-      seen.body.push_back({BallsOfBody(measurement.left), BallsOfBody(measurement.right)});
-      seen.whole_px[0].push_back(WholeBalls(measurement.left));
-      seen.whole_px[1].push_back(WholeBalls(measurement.right));
+    const bool first_body = measurement.body == 0;
+    if (first_body) {
+      wanted = next < positions.size() && positions[next] == position;
+      ++position;
+      if (wanted) AddWholeBalls(measurement, seen);
+      if (wanted) ++next;
+      if (each_pair) each_pair();
     }
-    ++position;
-    if (each_pair) each_pair();
+    if (wanted) AddBallsOfBody(measurement, seen.body[next - 1]);
     return true;
   };
-  RunSummary summary = MeasureRecording(source, setup, options, sink, stop);
-  seen.body.resize(positions.size());
-  return summary;
+  return MeasureRecording(source, setup, options, sink, stop);
 }
 
 /// One camera's levels: of everything, and of all but the body.
@@ -134,12 +144,15 @@ bool FindPlaces(const MeasureSetup& setup, const DetectionOptions& detection,
   return !body_rests;
 }
 
-/// Where the body is hardly found, and some of what stands still looks like its balls.
+/// Where a body is hardly found, and some of what stands still looks like its balls.
 bool MayMaskBody(const MeasureSetup& setup, const MaskOptions& options, const SeenBalls& seen,
                  const LearnedMask& learned) {
-  const auto found = static_cast<double>(learned.run.poses);
-  const auto pairs = static_cast<double>(learned.run.pairs_read);
-  if (found > (1 - options.bright_share) * pairs) return false;
+  const double few = (1 - options.bright_share) * static_cast<double>(learned.run.pairs_read);
+  const auto hardly_found = [&](const BodySummary& body) {
+    return static_cast<double>(body.poses) <= few;
+  };
+  const auto& bodies = learned.run.bodies;
+  if (std::none_of(bodies.begin(), bodies.end(), hardly_found)) return false;
   const auto many = [&](std::size_t i) {
     return CountBallPlaces(learned.masked[i], seen.whole_px[i], CameraOf(setup, i)) >=
            options.resting_balls;

@@ -101,23 +101,27 @@ std::optional<PoseTracker::Prediction> PoseTracker::Predict(std::int64_t timesta
   return prediction;
 }
 
+Rigid3 PoseTracker::Previous() const { return last_ ? last_->world_from_body : Rigid3{}; }
+
 Expected<PoseFix, PoseStatus> PoseTracker::Track(std::int64_t timestamp_ns,
                                                  const std::vector<BallObservation>& left_balls,
                                                  const std::vector<BallObservation>& right_balls) {
-  if (last_ && timestamp_ns < last_->timestamp_ns) {
-    throw std::invalid_argument("PoseTracker: the times decrease");
-  }
-  const Rigid3 previous = last_ ? last_->world_from_body : Rigid3{};
-  Expected<PoseFix, PoseStatus> fix = FindPose(timestamp_ns, previous, left_balls, right_balls);
+  Expected<PoseFix, PoseStatus> fix = Search(timestamp_ns, left_balls, right_balls);
   if (!fix) return fix;
-  SetFreeRoll(body_, previous, fix->pose);
+  return Accept(timestamp_ns, std::move(*fix), left_balls, right_balls);
+}
+
+Expected<PoseFix, PoseStatus> PoseTracker::Accept(std::int64_t timestamp_ns, PoseFix fix,
+                                                  const std::vector<BallObservation>& left_balls,
+                                                  const std::vector<BallObservation>& right_balls) {
+  SetFreeRoll(body_, Previous(), fix.pose);
   before_last_ = last_;
   // Roughly right even where it is withheld: good enough to predict from.
-  last_ = TimedPose{timestamp_ns, BodyPlacement(body_, fix->pose)};
-  if (IsInconsistent({left_, right_, body_, left_balls, right_balls}, *fix)) {
+  last_ = TimedPose{timestamp_ns, BodyPlacement(body_, fix.pose)};
+  if (IsInconsistent({left_, right_, body_, left_balls, right_balls}, fix)) {
     return Unexpected{PoseStatus::kInconsistent};
   }
-  if (fix->pose.dof > 0) levels_.Add(fix->pose.chi2 / fix->pose.dof);
+  if (fix.pose.dof > 0) levels_.Add(fix.pose.chi2 / fix.pose.dof);
   return fix;
 }
 
@@ -130,29 +134,46 @@ bool PoseTracker::IsInconsistent(const PoseView& view, const PoseFix& fix) const
   return pose.chi2 / pose.dof > options_.max_level_ratio * usual;
 }
 
-Expected<PoseFix, PoseStatus> PoseTracker::FindPose(
-    std::int64_t timestamp_ns, const Rigid3& previous,
-    const std::vector<BallObservation>& left_balls,
+PoseTracker::Followed PoseTracker::FollowPrediction(std::int64_t timestamp_ns,
+                                                    const PoseView& view) const {
+  Followed followed;
+  const auto prediction = Predict(timestamp_ns);
+  if (!prediction) return followed;
+  const Rigid3& placement = prediction->world_from_body;
+  const double safe_px = SafeGatePx(view, placement);
+  const double wanted_px =
+      std::max(kEstimateGatePx, prediction->error_mm * PixelsPerMm(view, placement));
+  followed.identity_safe = wanted_px <= safe_px;
+  const auto fix = VerifyPose(view, placement, std::min(wanted_px, safe_px), options_.acquire.pose);
+  if (!fix) return followed;
+  followed.complete = followed.identity_safe && ExplainedShare(view, *fix) >= 1;
+  followed.fix = *fix;
+  return followed;
+}
+
+std::optional<PoseFix> PoseTracker::Follow(std::int64_t timestamp_ns,
+                                           const std::vector<BallObservation>& left_balls,
+                                           const std::vector<BallObservation>& right_balls) const {
+  Followed followed =
+      FollowPrediction(timestamp_ns, {left_, right_, body_, left_balls, right_balls});
+  if (!followed.complete) return std::nullopt;
+  return std::move(followed.fix);
+}
+
+Expected<PoseFix, PoseStatus> PoseTracker::Search(
+    std::int64_t timestamp_ns, const std::vector<BallObservation>& left_balls,
     const std::vector<BallObservation>& right_balls) const {
-  const PoseView view{left_, right_, body_, left_balls, right_balls};
-  std::optional<PoseFix> tracked;
-  bool identity_safe = false;
-  if (const auto prediction = Predict(timestamp_ns)) {
-    const Rigid3& placement = prediction->world_from_body;
-    const double safe_px = SafeGatePx(view, placement);
-    const double wanted_px =
-        std::max(kEstimateGatePx, prediction->error_mm * PixelsPerMm(view, placement));
-    identity_safe = wanted_px <= safe_px;
-    const auto fix =
-        VerifyPose(view, placement, std::min(wanted_px, safe_px), options_.acquire.pose);
-    if (fix) tracked = *fix;
+  if (last_ && timestamp_ns < last_->timestamp_ns) {
+    throw std::invalid_argument("PoseTracker: the times decrease");
   }
-  if (tracked && identity_safe && ExplainedShare(view, *tracked) >= 1) return *tracked;
+  const PoseView view{left_, right_, body_, left_balls, right_balls};
+  const Followed followed = FollowPrediction(timestamp_ns, view);
+  if (followed.complete) return *followed.fix;
   // Something that should be seen is not: occluded, or the track is wrong. Let both explanations
   // compete.
   const auto acquired =
-      AcquirePose(left_, right_, body_, left_balls, right_balls, previous, options_.acquire);
-  return Choose(view, tracked, identity_safe, acquired);
+      AcquirePose(left_, right_, body_, left_balls, right_balls, Previous(), options_.acquire);
+  return Choose(view, followed.fix, followed.identity_safe, acquired);
 }
 
 Expected<PoseFix, PoseStatus> PoseTracker::Choose(

@@ -16,26 +16,41 @@ namespace stereomotion {
 /// memory does not grow with the recording.
 class RunTotals {
  public:
-  explicit RunTotals(RunSummary& summary) : summary_(summary) {}
+  RunTotals(const MeasureSetup& setup, RunSummary& summary);
 
+  /// Counts what was measured of one body; of a pair body by body, in their order.
   void Count(const TrackedPair& pair, ExposureResult exposure, const PairMeasurement& measurement);
-  void Finish(const MeasureSetup& setup, const MeasureOptions& options);
+  void Finish(const MeasureOptions& options);
 
  private:
+  /// What is kept of one body.
+  struct OfBody {
+    LevelHistogram levels;
+    std::int64_t dof = 0;            ///< of all poses
+    std::vector<FailedPair> failed;  ///< the first ones whose images could be read
+    std::int64_t inconsistent = 0, first_inconsistent_frame = -1;
+  };
+  void CountPair(const TrackedPair& pair);
+  void CountPose(const PoseEstimate& pose, OfBody& own);
   void CountLoss(const TrackedPair& pair, const PairMeasurement& measurement);
   void CountBlobs(const TrackedPair& pair);
   void CountExposure(ExposureResult exposure);
+  void FinishBody(std::size_t body);
+  void DiagnoseBodies(const MeasureOptions& options);
   void WarnOfUnreadable();
-  void WarnOfInconsistent();
+  void WarnOfInconsistent(std::size_t body);
   void WarnOfExposure();
-  void WarnOfResiduals(const MeasureSetup& setup);
+  void WarnOfResiduals(std::size_t body);
   void WarnOfHidden(const MeasureOptions& options);
+  /// Says which body a warning is about, where there are several.
+  void Warn(std::size_t body, const std::string& text);
 
+  const MeasureSetup& setup_;
   RunSummary& summary_;
-  LevelHistogram levels_;
-  std::vector<FailedPair> failed_;  ///< the first ones whose images could be read
-  std::string unreadable_;          ///< the first reason
-  std::int64_t first_inconsistent_frame_ = -1;
+  std::vector<OfBody> bodies_;
+  LevelHistogram levels_;              ///< of all bodies
+  bool pair_is_complete_ = true;       ///< so far, all bodies have a pose in the pair in hand
+  std::string unreadable_;             ///< the first reason
   std::int64_t unknown_exposure_ = 0;  ///< poses of smeared balls that may be off for it
   std::int64_t unknown_motion_ = 0;
   std::int64_t impossible_exposure_ = 0;

@@ -8,13 +8,15 @@
 
 #include "stereomotion/core/expected.h"
 #include "stereomotion/detection/ball_observation.h"
+#include "stereomotion/pipeline/measure.h"
 #include "stereomotion/pose/acquire_pose.h"
 
 namespace stereomotion {
 
-/// Holds a frame pair after tracking, without its images, until it is handed out. Cameras: 0 left,
-/// 1 right.
+/// Holds a frame pair after the tracking of one body, without its images, until it is handed out.
+/// Cameras: 0 left, 1 right.
 struct TrackedPair {
+  int body = 0;  ///< index into `MeasureSetup::bodies`
   std::int64_t frame = -1;
   std::int64_t timestamp_ns = 0;
   std::array<double, 2> exposure_s{};  ///< 0: unknown
@@ -31,5 +33,10 @@ struct TrackedPair {
   double detect_ms = 0;
   std::array<bool, 2> searched_whole{};
 };
+
+/// Finds the body that a tracked pair is about.
+inline const Body& BodyOf(const MeasureSetup& setup, const TrackedPair& pair) {
+  return setup.bodies[static_cast<std::size_t>(pair.body)];
+}
 
 }  // namespace stereomotion

@@ -48,12 +48,10 @@ std::optional<Eigen::Vector3d> CommonLine(const std::vector<Eigen::Vector3d>& po
 
 std::optional<Eigen::Vector3d> BodyLine(const Body& body) {
   std::vector<Eigen::Vector3d> points_mm;
-  double sigma_mm = 0;
   for (const Rod& rod : body.rods) {
     points_mm.insert(points_mm.end(), rod.balls_in_body_mm.begin(), rod.balls_in_body_mm.end());
-    sigma_mm = std::max(sigma_mm, rod.sigma_mm);
   }
-  return CommonLine(points_mm, sigma_mm);
+  return CommonLine(points_mm, LargestBallSigmaMm(body));
 }
 
 Eigen::Quaterniond SmallestRotation(const Eigen::Quaterniond& from,

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -65,20 +66,20 @@ Matrix6d RigPart(const Rig& rig, const int (&cameras)[2], const Estimator& estim
   return d_pose * rig.covariance->matrix * d_pose.transpose();
 }
 
-/// Every coordinate of every ball is uncertain by its rod's σ, in both cameras' views of it
-/// together.
+/// A ball's place in the body is uncertain in both cameras' views of it together, and with that of
+/// the other balls.
 Matrix6d BodyPart(const Body& body, const Estimator& estimator) {
-  Matrix6d covariance = Matrix6d::Zero();
-  for (const BallId& id : AllBalls(body)) {
-    Eigen::Matrix<double, 6, 3> d_pose = Eigen::Matrix<double, 6, 3>::Zero();
-    for (std::size_t i = 0; i < estimator.gains.size(); ++i) {
-      if (!(estimator.problem.observations[i].assignment.id == id)) continue;
-      d_pose += estimator.gains[i] * estimator.d_points[i];
-    }
-    const double sigma_mm = body.rods[static_cast<std::size_t>(id.rod)].sigma_mm;
-    covariance += sigma_mm * sigma_mm * d_pose * d_pose.transpose();
+  const Eigen::Matrix3d world_from_body = estimator.placement.rotation.toRotationMatrix();
+  const std::vector<BallId> ids = AllBalls(body);
+  Eigen::Matrix<double, 6, Eigen::Dynamic> d_pose(6, static_cast<Eigen::Index>(3 * ids.size()));
+  d_pose.setZero();
+  for (std::size_t i = 0; i < estimator.gains.size(); ++i) {
+    const BallId& id = estimator.problem.observations[i].assignment.id;
+    const auto place = std::find(ids.begin(), ids.end(), id) - ids.begin();
+    d_pose.middleCols<3>(3 * static_cast<Eigen::Index>(place)) +=
+        estimator.gains[i] * estimator.d_points[i] * world_from_body;
   }
-  return covariance;
+  return d_pose * CovarianceOfBalls(body) * d_pose.transpose();
 }
 
 }  // namespace

@@ -31,19 +31,14 @@ std::vector<Eigen::Vector3d> UsedBalls(const PoseProblem& problem) {
   return points_mm;
 }
 
-double LargestSigma(const Body& body) {
-  double sigma_mm = 0;
-  for (const Rod& rod : body.rods) sigma_mm = std::max(sigma_mm, rod.sigma_mm);
-  return sigma_mm;
-}
-
 /// Says by geometry alone whether the active balls can carry a pose.
 PoseStatus CheckCarriers(const PoseProblem& problem, const Body& body, const PoseOptions& options) {
   const std::vector<Eigen::Vector3d> points_mm = UsedBalls(problem);
   const int count = static_cast<int>(points_mm.size());
   const bool on_a_line = problem.free_axis_in_body.has_value();
   if (count < std::min(options.min_balls, 3)) return PoseStatus::kTooFewBalls;
-  if (!on_a_line && CommonLine(points_mm, LargestSigma(body))) return PoseStatus::kRollUndetermined;
+  if (!on_a_line && CommonLine(points_mm, LargestBallSigmaMm(body)))
+    return PoseStatus::kRollUndetermined;
   if (count < options.min_balls - (on_a_line ? 1 : 0)) return PoseStatus::kTooFewBalls;
   return PoseStatus::kOk;
 }

@@ -176,8 +176,37 @@ class BadInput(unittest.TestCase):
         (self.dir / "rig.yaml").unlink()
         self.refused(2, "--rig FILE", result=self.track())
         (self.dir / "rig.yaml").write_text(RIG)
-        result = run("track", "--left", "cam0", "--right", "cam1", cwd=self.dir)
-        self.refused(2, "--body", "not available yet", result=result)
+        without = ("track", "--left", "cam0", "--right", "cam1")
+        result = run(*without, "--learn-mask", "mask.yaml", cwd=self.dir)
+        self.refused(2, "--learn-mask: found no --body", result=result)
+        self.refused(2, "--ball-diameter-mm", result=self.track("--ball-diameter-mm", "16"))
+        # A single pair shows no motion: nothing to learn from, and nothing is left behind.
+        result = run(*without, "--count", "1", "--output", "run", cwd=self.dir)
+        self.refused(1, "no body was learned", "give --body", result=result)
+        self.assertFalse((self.dir / "run").exists())
+
+    def test_bodies_that_look_alike(self):
+        (self.dir / "other.yaml").write_text(BODY.replace("name: body", "name: other", 1))
+        both = ("--body", "body.yaml", "--body", "other.yaml")
+        result = self.track(*both)
+        self.refused(2, "'body'", "'other'", "look alike", "rods A and B of 'body'", "0.00 mm",
+                     "swap margin", result=result)
+        self.assertFalse((self.dir / "run").exists())
+        # 0.8 mm aside: less than what is needed.
+        near = BODY.replace("name: body", "name: other", 1).replace("[35,73.125,43.125]",
+                                                                    "[36.6,73.1,43.1]")
+        (self.dir / "other.yaml").write_text(near)
+        self.refused(2, "swap margin", "expected at least", result=self.track(*both))
+
+    def test_names_of_bodies(self):
+        spaced = BODY.replace("[-110,-60,0],[-55,-60,0]", "[-125,-60,0],[-70,-60,0]")
+        for name, text in (("body", "found 'body' twice"), ("Body", "found 'Body' twice"),
+                           ("a/b", "slashes"), ("..", "slashes"), ("x.", "can be a folder's"),
+                           (None, "has no name")):
+            line = f'name: "{name}"\n' if name else ""
+            (self.dir / "other.yaml").write_text(spaced.replace("name: body\n", line, 1))
+            result = self.track("--body", "body.yaml", "--body", "other.yaml")
+            self.refused(2, "other.yaml", text, result=result)
 
     def test_live_camera(self):
         self.refused(2, "not built yet", result=self.track("--left", "aravis:Basler-1"))

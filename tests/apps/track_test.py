@@ -278,6 +278,175 @@ class Track(unittest.TestCase):
         self.assertIn("No pose was found", page)
 
 
+# Two bodies in one: both halves of what the images show are rigid.
+UPPER = """format: stereomotion-body/1
+name: upper
+rods:
+  - name: A
+    ball_diameter_mm: 20
+    balls_mm: [[-150,-60,0],[-110,-60,0],[-55,-60,0],[15,-60,0],[100,-60,0]]
+  - name: B
+    ball_diameter_mm: 20
+    balls_mm: [[-140,-20,30],[-60,-14,36],[-20,-11,39],[35,-6.875,43.125],[140,1,51]]
+"""
+LOWER = """format: stereomotion-body/1
+name: lower
+rods:
+  - name: A
+    ball_diameter_mm: 20
+    balls_mm: [[-150,60,0],[-60,60,0],[-30,60,0],[60,60,0],[100,60,0]]
+  - name: B
+    ball_diameter_mm: 20
+    balls_mm: [[-140,100,30],[-110,100,30],[0,100,30],[45,100,30],[140,100,30]]
+"""
+
+
+class SeveralBodies(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.dir = pathlib.Path(tempfile.mkdtemp(prefix="stereomotion-test-"))
+        (cls.dir / "rig.yaml").write_text(RIG)
+        (cls.dir / "upper.yaml").write_text(UPPER)
+        (cls.dir / "lower.yaml").write_text(LOWER)
+        rods = LOWER.split("rods:\n")[1].replace("name: A", "name: C").replace("name: B", "name: D")
+        (cls.dir / "body.yaml").write_text(UPPER + rods)
+        (cls.dir / "scenario.yaml").write_text(
+            (SCENARIO % (1.5, *LAMP_MM, FRAMES)).split("false_balls:")[0]
+            + f"frames: {FRAMES}\nfps: 30\n")
+        made = run("simulate", "scenario.yaml", "--output", "rec", cwd=cls.dir)
+        if made.returncode != 0:
+            raise RuntimeError("simulate failed: " + made.stderr)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.dir, ignore_errors=True)
+
+    def track(self, output, *bodies, more=()):
+        given = [word for body in bodies for word in ("--body", body)]
+        result = run("track", "--left", "rec/cam0", "--right", "rec/cam1", *given, "--output", output,
+                     *more, cwd=self.dir)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        return json.loads((self.dir / output / "run.json").read_text())
+
+    def test_each_has_its_folder(self):
+        record = self.track("two", "upper.yaml", "lower.yaml")
+        self.assertEqual([(b["name"], b["folder"], b["tracked"], b["lost"], b["learned"])
+                          for b in record["bodies"]],
+                         [("upper", "upper", FRAMES, {}, False), ("lower", "lower", FRAMES, {}, False)])
+        self.assertEqual(record["frames"]["tracked"], FRAMES)
+        self.assertEqual(sum(i["role"] == "body" for i in record["inputs"]), 2)
+        self.assertFalse((self.dir / "two/poses.csv").exists())
+        for name in ("upper", "lower"):
+            folder = self.dir / "two" / name
+            for file in ("balls.csv", "body.yaml", "motion.csv", "motion.json", "axes.csv"):
+                self.assertTrue((folder / file).exists(), file)
+            self.assertTrue(all(row["status"] == "ok" for row in rows(folder / "poses.csv")))
+            # A detection is matched by its own body only.
+            matched = [row["rod"] != "" for row in rows(folder / "detections.csv")]
+            self.assertEqual(sum(matched), FRAMES * 20)
+            self.assertEqual(len(matched), FRAMES * 40)
+        page = (self.dir / "two/report.html").read_text()
+        xml.etree.ElementTree.fromstring(page.replace("<!DOCTYPE html>", ""))
+        for text in ("upper: Motion", "lower: Motion", "lower: Path", "upper: the pose was found"):
+            self.assertIn(text, page)
+
+    def test_order_decides_nothing(self):
+        self.track("one", "upper.yaml", "lower.yaml", more=("--no-motion",))
+        self.track("other", "lower.yaml", "upper.yaml", more=("--no-motion", "--threads", 1))
+        for name in ("upper", "lower"):
+            for file in ("poses.csv", "balls.csv", "detections.csv"):
+                self.assertEqual((self.dir / "one" / name / file).read_bytes(),
+                                 (self.dir / "other" / name / file).read_bytes(), file)
+            self.assertFalse((self.dir / "one" / name / "motion.csv").exists())
+
+    def test_poses_are_those_of_each_alone(self):
+        self.track("together", "upper.yaml", "lower.yaml", more=("--no-motion",))
+        for name in ("upper", "lower"):
+            self.track("alone-" + name, name + ".yaml", more=("--no-motion",))
+            self.assertEqual((self.dir / "together" / name / "poses.csv").read_bytes(),
+                             (self.dir / ("alone-" + name) / "poses.csv").read_bytes())
+
+    def test_force_leaves_nothing_of_the_run_before(self):
+        self.track("again", "upper.yaml", "lower.yaml")
+        self.track("again", "upper.yaml", more=("--force",))
+        left = {str(p.relative_to(self.dir / "again"))
+                for p in (self.dir / "again").rglob("*") if p.is_file()}
+        self.assertEqual(left - {"upper/body.yaml", "lower/body.yaml"},
+                         {"run.json", "report.html", "rig.yaml", "body.yaml", "poses.csv", "balls.csv",
+                          "detections.csv", "motion.csv", "motion.json", "axes.csv"})
+
+    def test_body_that_is_not_there(self):
+        (self.dir / "absent.yaml").write_text(LOWER.replace("lower", "absent").replace(
+            "[-60,60,0],[-30,60,0],[60,60,0]", "[-95,60,0],[-10,60,0],[35,60,0]").replace(
+            "[-110,100,30],[0,100,30],[45,100,30]", "[-60,100,30],[-20,100,30],[90,100,30]"))
+        record = self.track("absent", "upper.yaml", "absent.yaml")
+        self.assertEqual([b["tracked"] for b in record["bodies"]], [FRAMES, 0])
+        self.assertEqual(record["frames"]["tracked"], 0)
+        self.assertTrue(any(w.startswith("body 'absent':") for w in record["warnings"]))
+
+
+class Motion(unittest.TestCase):
+    """The end of a run of one body."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.dir = pathlib.Path(tempfile.mkdtemp(prefix="stereomotion-test-"))
+        (cls.dir / "rig.yaml").write_text(RIG + NOISE)
+        (cls.dir / "body.yaml").write_text(BODY)
+        (cls.dir / "scenario.yaml").write_text(SCENARIO % (1.5, *LAMP_MM, FRAMES))
+        made = run("simulate", "scenario.yaml", "--output", "rec", cwd=cls.dir)
+        if made.returncode != 0:
+            raise RuntimeError("simulate failed: " + made.stderr)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.dir, ignore_errors=True)
+
+    def track(self, *more):
+        return run("track", "--left", "rec/cam0", "--right", "rec/cam1", "--body", "body.yaml", *more,
+                   cwd=self.dir)
+
+    def test_motion_is_written_and_told(self):
+        result = self.track("--output", "run")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("rotation", result.stdout)
+        self.assertEqual(result.stdout.splitlines()[-1], "run")
+        self.assertEqual(len(rows(self.dir / "run/motion.csv")), FRAMES)
+        answer = json.loads((self.dir / "run/motion.json").read_text())
+        self.assertEqual(answer["format"], "stereomotion-motion/1")
+        page = (self.dir / "run/report.html").read_text()
+        for text in ("Angular velocity", "law of the centre", "Evidence for the law"):
+            self.assertIn(text, page)
+        self.assertNotRegex(page, re.compile(r"\bnan\b|\binf\b", re.I))
+
+    def test_copies_are_what_the_run_used(self):
+        self.track("--output", "first", "--no-motion")
+        again = run("track", "--left", "rec/cam0", "--right", "rec/cam1", "--rig", "first/rig.yaml",
+                    "--body", "first/body.yaml", "--output", "second", "--no-motion", cwd=self.dir)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        for file in ("poses.csv", "balls.csv", "rig.yaml"):
+            kept = [(self.dir / run / file).read_text() for run in ("first", "second")]
+            if file == "rig.yaml":  # the source it names differs
+                kept = [re.sub(r".*source.*\n", "", text) for text in kept]
+            self.assertEqual(*kept, file)
+
+    def test_one_pose_does_not_lose_the_run(self):
+        result = self.track("--output", "short", "--count", 1)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(len(rows(self.dir / "short/poses.csv")), 1)
+        record = json.loads((self.dir / "short/run.json").read_text())
+        self.assertEqual(record["state"], "done")
+        self.assertTrue((self.dir / "short/report.html").exists())
+
+    def test_users_files_are_never_overwritten(self):
+        before = [(self.dir / name).read_bytes() for name in ("rig.yaml", "body.yaml")]
+        result = self.track("--output", ".", "--force", "--count", 3)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        result = self.track("--output", ".", "--force", "--count", 2)  # now it is a RUN
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(before, [(self.dir / n).read_bytes() for n in ("rig.yaml", "body.yaml")])
+
+
 if __name__ == "__main__":
     PROGRAM = os.path.abspath(sys.argv.pop(1))
     unittest.main(verbosity=1)

@@ -1,6 +1,6 @@
 """Runs the studies of docs/accuracy.md with few balls: columns, conditions, and errors that theory allows.
 
-usage: studies_test.py STUDY_PROGRAM EXPOSURE_PROGRAM
+usage: studies_test.py STUDY_PROGRAM EXPOSURE_PROGRAM CENTER_PROGRAM
 """
 import csv
 import math
@@ -10,7 +10,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-STUDY, EXPOSURE = sys.argv[1:3]
+STUDY, EXPOSURE, CENTERS = sys.argv[1:4]
 METHODS = {"ml", "wavelet", "centroid", "moments", "simple_blob", "canny_ellipse", "hough"}
 
 
@@ -81,6 +81,37 @@ class ExposureStudy(unittest.TestCase):
         for row in self.deviations:
             box = [float(row[name]) for name in ("q05_mm", "q25_mm", "median_mm", "q75_mm", "q95_mm")]
             self.assertEqual(box, sorted(box))
+
+
+class CenterStudy(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        with tempfile.TemporaryDirectory() as folder:
+            run(CENTERS, folder)
+            cls.rows = rows(Path(folder) / "centers.csv")
+
+    def test_every_scene_has_its_baselines_and_our_own(self):
+        scenes = {row["scene"] for row in self.rows}
+        self.assertEqual(scenes, {"ball", "ball_per_marker", "ball_both_moving",
+                                  "ball_both_mirrored", "hinge"})
+        for scene in scenes:
+            kinds = {row["baseline"] for row in self.rows if row["scene"] == scene}
+            self.assertEqual(kinds, {"0", "1"}, scene)
+
+    def test_our_centre_is_found_in_every_trial_and_its_covariance_is_true(self):
+        # 12 trials of 2 or 3 degrees of freedom: the NEES/dof is uncertain by √(2/24) = 0.29 at
+        # most; five standard errors, for some ten rows.
+        for row in self.rows:
+            if row["method"] != "stereomotion":
+                continue
+            self.assertEqual(row["answered"], row["trials"], row)
+            self.assertLess(abs(float(row["nees_dof"]) - 1), 1.45, row)
+
+    def test_algebraic_spheres_are_drawn_towards_the_markers(self):
+        # Gamage & Lasenby's bias, which the correction takes away: at 20° it is twice the noise.
+        rmse = {row["method"]: float(row["rmse"]) for row in self.rows
+                if row["scene"] == "ball" and row["range_deg"] == "20"}
+        self.assertGreater(rmse["spheres, algebraic"], 1.5 * rmse["spheres, bias-corrected"])
 
 
 if __name__ == "__main__":

@@ -82,7 +82,7 @@ Truth TruthOf(const Scenario& scenario) {
 
 RecordingRun MeasureSimulated(const Scenario& scenario) {
   RecordingRun run;
-  run.setup = {scenario.rig, 0, 1, scenario.body, {}, {}};
+  run.setup = {scenario.rig, 0, 1, {scenario.body}, {}, {}};
   run.truth = TruthOf(scenario);
   const SimulatedPairs source(
       scenario.frames, [&scenario](std::int64_t frame) { return ScenarioAt(scenario, frame); });

@@ -46,7 +46,7 @@ RecordingRun Measure(const fs::path& recording, const Rig& rig, const TemporaryF
 std::vector<RefineFrame> FramesOf(const RecordingRun& run, const TemporaryFolder& folder) {
   std::string rows = std::string(DetectionsHeader()) + "\n";
   for (const auto& measurement : run.measurements) {
-    AppendDetectionRows(measurement, run.setup.body, "cam0", "cam1", rows);
+    AppendDetectionRows(measurement, run.setup.bodies.front(), "cam0", "cam1", rows);
   }
   folder.Write("detections.csv", rows);
   std::vector<RefineFrame> frames;
@@ -88,7 +88,7 @@ void RefineAndMeasureAgain(const fs::path& recording, double turn_deg) {
   const Rig truth = ReadRig(recording / "rig.yaml");
   const Rig old_rig = Bumped(truth, turn_deg);
   const RecordingRun before = Measure(recording, old_rig, folder);
-  const auto refined = RefineRig(old_rig, before.setup.body, FramesOf(before, folder));
+  const auto refined = RefineRig(old_rig, before.setup.bodies.front(), FramesOf(before, folder));
   ASSERT_TRUE(refined) << refined.error().text;
   EXPECT_TRUE(refined->motion.significant);
   EXPECT_EQ(refined->frames.size(), before.measurements.size());
@@ -128,7 +128,7 @@ TEST(RefineRigOfRecording, RigWithCovariance) {
   for (const double turn_deg : {0.0, 2.0}) {
     const Rig old_rig = Bumped(calibrated, turn_deg);
     const RecordingRun before = Measure(recording, old_rig, folder);
-    const auto refined = RefineRig(old_rig, before.setup.body, FramesOf(before, folder));
+    const auto refined = RefineRig(old_rig, before.setup.bodies.front(), FramesOf(before, folder));
     ASSERT_TRUE(refined) << refined.error().text;
     EXPECT_EQ(refined->motion.significant, turn_deg > 0) << refined->motion.chi2;
     const auto parameters = refined->rig.covariance->parameters.size();

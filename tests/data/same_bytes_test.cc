@@ -24,11 +24,12 @@ FileBytes TrackDemo(int threads) {
   const fs::path folder =
       fs::path(::testing::TempDir()) / ("stereomotion_same_bytes_" + std::to_string(threads));
   const auto source = OpenRecording(demo / "cam0", demo / "cam1");
-  const MeasureSetup setup{ReadRig(demo / "rig.yaml"), 0, 1, ReadBody(demo / "body.yaml"), {}, {}};
+  const MeasureSetup setup{ReadRig(demo / "rig.yaml"),     0,  1,
+                           {ReadBody(demo / "body.yaml")}, {}, {}};
   MeasureOptions options;
   options.threads = threads;
   {
-    RunWriter writer(folder, {setup.body, "cam0", "cam1"}, /*overwrite=*/true, {});
+    RunWriter writer(folder, {setup.bodies, "cam0", "cam1"}, /*overwrite=*/true, {});
     MeasureRecording(*source, setup, options, [&writer](const PairMeasurement& measurement) {
       writer.Write(measurement);
       return true;

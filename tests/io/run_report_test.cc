@@ -40,7 +40,7 @@ class RunReportTest : public ::testing::Test {
     return pair;
   }
   std::string Html(const RunTrace& trace) const {
-    return RunHtml({record_, trace, left_, right_, masks_});
+    return RunHtml({record_, {{&trace, nullptr}}, left_, right_, masks_});
   }
 
   Body body_;
@@ -67,6 +67,39 @@ TEST_F(RunReportTest, WellFormedAndComplete) {
   EXPECT_TRUE(Has(html, "class=\"mask\""));
   EXPECT_TRUE(Has(html, "class=\"lost\""));
   EXPECT_FALSE(Has(html, "nan"));
+}
+
+TEST_F(RunReportTest, TwoBodiesWithTheirMotion) {
+  RunTrace trace(body_), other(body_);
+  MotionAnalysis motion;
+  for (int i = 0; i < 20; ++i) {
+    trace.Add(Pair(i));
+    other.Add(Pair(i, i >= 15));
+    motion.series.emplace_back().timestamp_ns = i * 10'000'000;
+    MotionSample& sample = motion.samples.emplace_back();
+    sample.status = i == 7 ? MotionStatus::kGap : MotionStatus::kOk;
+    sample.velocity.covariance.setIdentity();
+  }
+  motion.spin.verdict = "range of rotation 11 degrees <known>";
+  motion.spin.center.emplace().free_axis_in_body = Eigen::Vector3d::UnitZ();
+  motion.spin.center->states.resize(20);
+  motion.axis.emplace().axis.in_world = Eigen::Vector3d::UnitZ();
+  motion.axis->point_in_world_mm = {1, 2, 3};
+  motion.spin.laws.resize(1);
+  record_.summary.pairs_read = 20;
+  record_.summary.bodies = {{"thigh <l>", 20, {}, 1.0, 1}, {"shank", 5, {{"lost", 15}}, 1.0, 1}};
+  const std::string html =
+      RunHtml({record_, {{&trace, &motion}, {&other, nullptr}}, left_, right_, masks_});
+  EXPECT_EQ(FindXmlError(html), "");
+  EXPECT_TRUE(Has(html, "verdict doubtful"));  // the worse of the two
+  EXPECT_TRUE(Has(html, "thigh &lt;l&gt;: the pose was found in 20 of 20"));
+  EXPECT_TRUE(Has(html, "shank: the pose was found in 5 of 20"));
+  EXPECT_TRUE(Has(html, "degrees &lt;known&gt;"));
+  EXPECT_TRUE(Has(html, "thigh &lt;l&gt;: Motion"));
+  EXPECT_FALSE(Has(html, "shank: Motion"));
+  EXPECT_TRUE(Has(html, "Angular velocity"));
+  EXPECT_TRUE(Has(html, "free along"));
+  EXPECT_FALSE(Has(html, ">nan"));
 }
 
 TEST_F(RunReportTest, NothingToShow) {

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "io_test_support.h"
+#include "stereomotion/io/body_folder.h"
 #include "stereomotion/io/csv_rows.h"
 #include "stereomotion/io/output_error.h"
 #include "stereomotion/io/suggest.h"
@@ -139,7 +140,7 @@ RunRecord Record() {
 TEST(RunWriter, WritesValidFilesFromTheStart) {
   TemporaryFolder folder;
   const auto run = folder.path() / "a" / "run";
-  RunWriter writer(run, {OneRod(), "cam0", "cam1"}, false, Record());
+  RunWriter writer(run, {{OneRod()}, "cam0", "cam1"}, false, Record());
   writer.Write(WithPose());
   const auto json = nlohmann::json::parse(Content(run / "run.json"));
   EXPECT_EQ(json["state"], "running");
@@ -158,7 +159,7 @@ TEST(RunWriter, NeverOverwritesUnasked) {
   folder.Write("run/precious.txt", "x");
   const auto open = [&](const std::string& name, bool overwrite) {
     return testing::Error([&] {
-      RunWriter(folder.path() / name, {OneRod(), "l", "r"}, overwrite, Record());
+      RunWriter(folder.path() / name, {{OneRod()}, "l", "r"}, overwrite, Record());
     });
   };
   EXPECT_TRUE(testing::Has(open("run", false), "give --force"));
@@ -168,7 +169,7 @@ TEST(RunWriter, NeverOverwritesUnasked) {
 }
 
 TEST(RunWriter, PlaceThatCannotBeWritten) {
-  EXPECT_THROW(RunWriter("/proc/run", {OneRod(), "l", "r"}, false, Record()), OutputError);
+  EXPECT_THROW(RunWriter("/proc/run", {{OneRod()}, "l", "r"}, false, Record()), OutputError);
 }
 
 // A limit on the file size stands in for the full disk: the system takes part of a write, then
@@ -213,7 +214,7 @@ TEST(RowFile, OverwriteThatFindsNoRoomKeepsTheOld) {
 
 TEST(RunWriter, FullDiskLeavesTheSamePairsInAllFiles) {
   TemporaryFolder folder;
-  RunWriter writer(folder.path() / "run", {OneRod(), "cam0", "cam1"}, false, Record());
+  RunWriter writer(folder.path() / "run", {{OneRod()}, "cam0", "cam1"}, false, Record());
   const auto pose_rows = [&] {
     const std::string text = Content(folder.path() / "run/poses.csv");
     return std::count(text.begin(), text.end(), '\n') - 1;
@@ -228,6 +229,93 @@ TEST(RunWriter, FullDiskLeavesTheSamePairsInAllFiles) {
   EXPECT_GT(pose_rows(), 0);
   EXPECT_EQ(std::count(balls.begin(), balls.end(), '\n') - 1, pose_rows());
   EXPECT_EQ(Content(folder.path() / "run/poses.csv").back(), '\n');
+}
+
+std::vector<Body> TwoBodies() {
+  std::vector<Body> bodies{OneRod(), OneRod()};
+  bodies[1].name = "shank";
+  return bodies;
+}
+
+PairMeasurement OfBody(int body) {
+  PairMeasurement measurement = WithPose();
+  measurement.body = body;
+  return measurement;
+}
+
+TEST(RunWriter, SeveralBodiesHaveFoldersOfTheirOwn) {
+  TemporaryFolder folder;
+  const auto run = folder.path() / "run";
+  RunWriter writer(run, {TwoBodies(), "cam0", "cam1"}, false, Record());
+  const std::string header = std::string(PosesHeader()) + "\n";
+  writer.Write(OfBody(0));
+  EXPECT_EQ(Content(run / "plate/poses.csv"), header);  // the pair is not whole yet
+  writer.Write(OfBody(1));
+  for (const char* name : {"plate", "shank"}) {
+    EXPECT_EQ(Content(run / name / "poses.csv"), header + PoseRow(WithPose())) << name;
+    EXPECT_TRUE(std::filesystem::exists(run / name / "detections.csv"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(run / "poses.csv"));
+}
+
+TEST(RunWriter, FullDiskLeavesTheSamePairsOfAllBodies) {
+  TemporaryFolder folder;
+  const auto run = folder.path() / "run";
+  RunWriter writer(run, {TwoBodies(), "cam0", "cam1"}, false, Record());
+  // The second body's rows are longer: its file is the first that finds no room.
+  PairMeasurement longer = OfBody(1);
+  longer.balls.resize(3, longer.balls.front());
+  const SmallDisk disk(2000);
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 100; ++i) {
+          writer.Write(OfBody(0));
+          writer.Write(longer);
+        }
+      },
+      OutputError);
+  const auto rows = [&](const std::string& file) {
+    const std::string text = Content(run / file);
+    EXPECT_EQ(text.back(), '\n') << file;
+    return std::count(text.begin(), text.end(), '\n') - 1;
+  };
+  EXPECT_GT(rows("plate/poses.csv"), 0);
+  EXPECT_EQ(rows("plate/balls.csv"), rows("plate/poses.csv"));
+  EXPECT_EQ(rows("shank/poses.csv"), rows("plate/poses.csv"));
+  EXPECT_EQ(rows("shank/balls.csv"), 3 * rows("plate/poses.csv"));
+}
+
+TEST(RunWriter, OverwritingRemovesTheRunBefore) {
+  TemporaryFolder folder;
+  const auto run = folder.path() / "run";
+  { RunWriter writer(run, {TwoBodies(), "l", "r"}, false, Record()); }
+  folder.Write("run/plate/motion.json", "{}");
+  folder.Write("run/joint.json", "{}");
+  folder.Write("run/shank/notes.txt", "x");
+  { RunWriter writer(run, {{OneRod()}, "l", "r"}, true, Record()); }
+  EXPECT_FALSE(std::filesystem::exists(run / "plate"));
+  EXPECT_FALSE(std::filesystem::exists(run / "joint.json"));
+  EXPECT_FALSE(std::filesystem::exists(run / "shank/poses.csv"));
+  EXPECT_EQ(Content(run / "shank/notes.txt"), "x");
+  EXPECT_TRUE(std::filesystem::exists(run / "poses.csv"));
+}
+
+TEST(BodyNames, FitForFolders) {
+  const auto problem = [](const std::string& a, const std::string& b) {
+    std::vector<Body> bodies = TwoBodies();
+    bodies[0].name = a;
+    bodies[1].name = b;
+    return BodyNameProblem(bodies);
+  };
+  EXPECT_EQ(problem("thigh", "shank 2.1"), "");
+  EXPECT_EQ(problem("Oberschenkel-\xc3\xa4", "b"), "");
+  for (const char* bad : {"", "..", ".x", "x.", " x", "a/b", "a\\b", "a\nb", "a:b"}) {
+    EXPECT_NE(problem(bad, "b"), "") << bad;
+  }
+  EXPECT_NE(problem(std::string(101, 'x'), "b"), "");
+  EXPECT_NE(problem("thigh", "Thigh"), "");
+  EXPECT_EQ(BodyNameProblem({OneRod()}), "");
+  EXPECT_EQ(BodyNameProblem({Body{}}), "");  // alone, nobody asks for its name
 }
 
 TEST(Suggest, Distances) {

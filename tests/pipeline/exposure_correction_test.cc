@@ -21,7 +21,7 @@ class CorrectForExposureTest : public ::testing::Test {
  protected:
   CorrectForExposureTest() {
     setup_.rig = MakeConvergingRig();
-    setup_.body = MakeTwoRodBody();
+    setup_.bodies = {MakeTwoRodBody()};
   }
   static Rigid3 PoseAt(const Rigid3& start, double time_s) {
     const Eigen::Vector3d rate_rad_s(-3, -16.5, -1.5), velocity_mm_s(2000, -1500, 1600);
@@ -34,7 +34,7 @@ class CorrectForExposureTest : public ::testing::Test {
   Eigen::Vector2d MeanOutline(const BallAssignment& a, const Rigid3& start, double mid_s) const {
     constexpr int kInstants = 64;
     const RigCamera& camera = setup_.rig.cameras[static_cast<std::size_t>(a.camera)];
-    const Rod& rod = setup_.body.rods[static_cast<std::size_t>(a.id.rod)];
+    const Rod& rod = setup_.bodies[0].rods[static_cast<std::size_t>(a.id.rod)];
     Eigen::Vector2d sum_px = Eigen::Vector2d::Zero();
     for (int i = 0; i < kInstants; ++i) {
       const Rigid3 pose = PoseAt(start, mid_s + ((i + 0.5) / kInstants - 0.5) * exposure_s_);
@@ -46,7 +46,7 @@ class CorrectForExposureTest : public ::testing::Test {
   }
   TrackedPair SeePair(const Rigid3& start, int number) {
     const double mid_s = kFrame_s * number;
-    ObservedPair seen = Observe(setup_.rig.cameras[0], setup_.rig.cameras[1], setup_.body,
+    ObservedPair seen = Observe(setup_.rig.cameras[0], setup_.rig.cameras[1], setup_.bodies[0],
                                 PoseAt(start, mid_s), {}, rng_);
     for (const BallAssignment& a : seen.truth) {
       BallObservation& ball = ObservationOf(seen, a);
@@ -58,9 +58,9 @@ class CorrectForExposureTest : public ::testing::Test {
     pair.timestamp_ns = number * kFrameNs;
     pair.exposure_s = {exposure_s_, one_camera_tells_ ? 0 : exposure_s_};
     PoseFix fix;
-    fix.pose = *EstimatePose(setup_.rig.cameras[0], setup_.rig.cameras[1], setup_.body, seen.left,
+    fix.pose = *EstimatePose(setup_.rig.cameras[0], setup_.rig.cameras[1], setup_.bodies[0], seen.left,
                              seen.right, seen.truth, PoseAt(start, mid_s), {}, &fix.used);
-    pair.mean_world_from_body = BodyPlacement(setup_.body, fix.pose);
+    pair.mean_world_from_body = BodyPlacement(setup_.bodies[0], fix.pose);
     pair.fix = std::move(fix);
     pair.balls = {std::move(seen.left), std::move(seen.right)};
     return pair;

@@ -28,7 +28,7 @@ class LearnMaskTest : public ::testing::Test {
   Expected<LearnedMask, MaskFailure> Learn(const std::function<Scenario(std::int64_t)>& at,
                                            std::int64_t pairs = kPairs) {
     const Scenario scenario = MakeScene();
-    MeasureSetup setup{scenario.rig, 0, 1, scenario.body, {}, {}};
+    MeasureSetup setup{scenario.rig, 0, 1, {scenario.body}, {}, {}};
     for (RigCamera& camera : setup.rig.cameras) camera.noise = scenario.sensor.noise();
     MeasureOptions options;
     options.threads = 2;

@@ -53,7 +53,7 @@ class MeasureRecordingTest : public ::testing::Test {
   MeasureRecordingTest() {
     const Scenario scenario = MakeTestScenario();
     setup_.rig = scenario.rig;
-    setup_.body = scenario.body;
+    setup_.bodies = {scenario.body};
     noise_ = scenario.sensor.noise();
     options_.threads = 2;
   }
@@ -225,7 +225,7 @@ TEST_F(MeasureRecordingTest, SwappedCameras) {
 }
 
 TEST_F(MeasureRecordingTest, BodyInMetres) {
-  for (Rod& rod : setup_.body.rods) {
+  for (Rod& rod : setup_.bodies[0].rods) {
     rod.ball_diameter_mm *= 0.001;
     for (Eigen::Vector3d& ball : rod.balls_in_body_mm) ball *= 0.001;
   }
@@ -235,8 +235,8 @@ TEST_F(MeasureRecordingTest, BodyInMetres) {
 }
 
 TEST_F(MeasureRecordingTest, AnotherBody) {
-  setup_.body.rods[0].balls_in_body_mm = {{0, 0, 0}, {31, 0, 0}, {90, 0, 0}, {140, 0, 0}};
-  setup_.body.rods[1].balls_in_body_mm = {{0, 60, 0}, {0, 100, 0}, {0, 170, 0}};
+  setup_.bodies[0].rods[0].balls_in_body_mm = {{0, 0, 0}, {31, 0, 0}, {90, 0, 0}, {140, 0, 0}};
+  setup_.bodies[0].rods[1].balls_in_body_mm = {{0, 60, 0}, {0, 100, 0}, {0, 170, 0}};
   const RunSummary summary = Measure(RenderedPairs());
   EXPECT_EQ(summary.poses, 0);
   EXPECT_TRUE(AnyContains(summary.warnings, "body file"));
@@ -306,7 +306,7 @@ TEST_F(MeasureRecordingTest, CallersMistakes) {
   setup_.right_camera = 2;
   EXPECT_THROW(Measure(source), std::invalid_argument);
   setup_.right_camera = 1;
-  setup_.body.rods.clear();
+  setup_.bodies[0].rods.clear();
   EXPECT_THROW(Measure(source), std::invalid_argument);
 }
 

@@ -41,7 +41,7 @@ class SearchEveryTest : public ::testing::Test {
   SearchEveryTest() {
     const Scenario scenario = MakeTestScenario();
     setup_.rig = scenario.rig;
-    setup_.body = scenario.body;
+    setup_.bodies = {scenario.body};
     for (RigCamera& camera : setup_.rig.cameras) camera.noise = scenario.sensor.noise();
   }
   std::vector<PairMeasurement> Measure(int search_every, int threads) {

@@ -80,6 +80,20 @@ TEST_F(CalibrationUncertaintyTest, EachParameterAgainstSolvingAgain) {
   }
 }
 
+// All balls off by the same vector: that shifts the body in itself, and turns nothing.
+TEST_F(CalibrationUncertaintyTest, CorrelatedBallsMoveTogether) {
+  const double sigma_mm = 0.1;
+  const auto size = static_cast<Eigen::Index>(3 * CountBalls(body_));
+  Eigen::MatrixXd shift(size, 3);
+  for (Eigen::Index i = 0; i < size; i += 3) shift.middleRows<3>(i).setIdentity();
+  body_.covariance_mm2 = sigma_mm * sigma_mm * shift * shift.transpose();
+  for (Rod& rod : body_.rods) rod.sigma_mm = 1;  // the covariance goes before it
+  const Vector6d propagated = Propagate(Solve(rig_, body_));
+  // The outlines' shift is taken as constant: exact to some 1e-5 of the whole.
+  EXPECT_LT(propagated.head<3>().norm(), 1e-8);
+  EXPECT_LT((propagated.tail<3>().array() - sigma_mm).abs().maxCoeff(), 1e-4 * sigma_mm);
+}
+
 TEST_F(CalibrationUncertaintyTest, MonteCarloOverRigsAndBodies) {
   const double sigmas[] = {0.5,  0.5,  0.5,  0.5,  5e-4, 5e-4, 5e-5, 5e-5,
                            1e-3, 1e-4, 1e-4, 1e-4, 0.1,  0.1,  0.1};

@@ -13,14 +13,14 @@ namespace fs = std::filesystem;
 RecordingRun MeasureFolder(const fs::path& recording, const std::string& rig_file) {
   RecordingRun run;
   run.setup.rig = ReadRig(recording / rig_file);
-  run.setup.body = ReadBody(recording / "body.yaml");
+  run.setup.bodies = {ReadBody(recording / "body.yaml")};
   const auto source = OpenRecording(recording / "cam0", recording / "cam1");
   const MeasurementSink sink = [&run](const PairMeasurement& measurement) {
     run.measurements.push_back(measurement);
     return true;
   };
   run.summary = MeasureRecording(*source, run.setup, {}, sink);
-  run.truth = ReadTruth(recording, run.setup.body, {"cam0", "cam1"});
+  run.truth = ReadTruth(recording, run.setup.bodies.front(), {"cam0", "cam1"});
   return run;
 }
 

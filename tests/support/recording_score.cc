@@ -91,13 +91,13 @@ RecordingScore Score(const RecordingRun& run) {
   RecordingScore score;
   for (const PairMeasurement& measurement : run.measurements) {
     const TrueFrame& truth = run.truth.at(measurement.frame);
-    const bool clear = truth.ShowsRods(run.setup.body, 3);
+    const bool clear = truth.ShowsRods(run.setup.bodies.front(), 3);
     ++score.pairs;
     score.clear_pairs += clear ? 1 : 0;
     if (!measurement.pose) continue;
     ++score.poses;
     score.clear_poses += clear ? 1 : 0;
-    ScorePose(run.setup.body, *measurement.pose, truth, score);
+    ScorePose(run.setup.bodies.front(), *measurement.pose, truth, score);
     for (const BallMeasurement& ball : measurement.balls) ScoreBall(ball, truth, score);
   }
   return score;

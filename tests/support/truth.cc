@@ -51,11 +51,18 @@ int RodIndex(const Body& body, const std::string& name) {
 void ReadPoses(const fs::path& file, Truth& truth) {
   Table table(file);
   while (table.Next()) {
-    Rigid3& pose = truth[std::stoll(table.Text("frame"))].world_from_body;
+    TrueFrame& frame = truth[std::stoll(table.Text("frame"))];
+    Rigid3& pose = frame.world_from_body;
     pose.rotation = Eigen::Quaterniond(table.Number("qw"), table.Number("qx"), table.Number("qy"),
                                        table.Number("qz"))
                         .normalized();
     pose.translation_mm = {table.Number("tx_mm"), table.Number("ty_mm"), table.Number("tz_mm")};
+    frame.omega_rad_s = {table.Number("wx_rad_s"), table.Number("wy_rad_s"),
+                         table.Number("wz_rad_s")};
+    frame.center_mm = {table.Number("center_x_mm"), table.Number("center_y_mm"),
+                       table.Number("center_z_mm")};
+    frame.velocity_mm_s = {table.Number("vx_mm_s"), table.Number("vy_mm_s"),
+                           table.Number("vz_mm_s")};
   }
 }
 

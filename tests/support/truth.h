@@ -30,6 +30,8 @@ struct TrueBall {
 /// Holds the truth of one frame pair.
 struct TrueFrame {
   Rigid3 world_from_body;                      ///< at the left camera's mid-exposure
+  Eigen::Vector3d omega_rad_s;                 ///< in world axes
+  Eigen::Vector3d center_mm, velocity_mm_s;    ///< of the spin centre, in world
   std::array<std::vector<TrueBall>, 2> balls;  ///< left, right
 
   [[nodiscard]] const TrueBall* Find(int camera, const BallId& id) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,10 @@ struct Rod {
 struct Body {
   std::string name;
   std::vector<Rod> rods;
+  /// Covariance of all balls' coordinates together (3M×3M; rod by rod, ball by ball, x y z); goes
+  /// before the rods' `sigma_mm`. Empty: none. It may be singular: a learned body's is in its
+  /// gauge.
+  Eigen::MatrixXd covariance_mm2{};
 };
 
 /// Names one ball of a body: its rod and its place on the rod, both from 0.
@@ -28,5 +33,16 @@ struct BallId {
     return a.rod == b.rod && a.ball == b.ball;
   }
 };
+
+/// Counts the balls of all rods.
+std::size_t CountBalls(const Body& body);
+
+/// Gives the covariance of all balls' coordinates (3M×3M, as `Body::covariance_mm2`): that of the
+/// body, or else the rods' `sigma_mm` on the diagonal. Throws std::invalid_argument where the
+/// body's has not the size of its balls.
+Eigen::MatrixXd CovarianceOfBalls(const Body& body);
+
+/// Finds the largest standard uncertainty of any ball's coordinate [mm].
+double LargestBallSigmaMm(const Body& body);
 
 }  // namespace stereomotion

@@ -24,11 +24,22 @@ constexpr double kRemarkableChi2Dof = 1.5;
 /// common error that no covariance states.
 constexpr double kDoubtfulChi2Dof = 2;
 
+/// Holds the totals of one body.
+struct BodySummary {
+  std::string name;
+  std::int64_t poses = 0;
+  std::map<std::string, std::int64_t> lost_by_reason;  ///< status word → frame pairs
+  std::optional<double> median_chi2_dof;               ///< as in `RunSummary`, of this body
+  double chi2_dof_by_chance = 1;
+};
+
 /// Holds the totals of one run over a recording.
 struct RunSummary {
   std::int64_t pairs_read = 0;
-  std::int64_t poses = 0;
-  std::map<std::string, std::int64_t> lost_by_reason;  ///< status word → frame pairs
+  std::int64_t poses = 0;  ///< frame pairs with a pose of every body
+  /// Status word → the other frame pairs; of the first body that is without a pose in a pair.
+  std::map<std::string, std::int64_t> lost_by_reason;
+  std::vector<BodySummary> bodies;  ///< in the order of `MeasureSetup::bodies`
   NoiseRecord noise_left, noise_right;
   /// Images that were searched whole, not only where balls were expected.
   std::int64_t whole_searches_left = 0, whole_searches_right = 0;
@@ -37,7 +48,7 @@ struct RunSummary {
   std::map<std::string, double> stage_ms;
   double elapsed_ms = 0;
   bool interrupted = false;               ///< ended by SIGINT/SIGTERM
-  std::optional<double> median_chi2_dof;  ///< of the poses' residuals; 1 where all models hold
+  std::optional<double> median_chi2_dof;  ///< of all poses' residuals; 1 where all models hold
   /// What the median reaches by chance in one run of thirty thousand (4 σ); 1 at infinitely many
   /// degrees of freedom.
   double chi2_dof_by_chance = 1;

@@ -21,4 +21,7 @@ struct C3dPoints {
 /// are cut short or are none.
 C3dPoints ReadC3d(const std::filesystem::path& file);
 
+/// Reads the same from memory; `name` stands for the file in messages.
+C3dPoints ReadC3dBytes(std::string bytes, const std::string& name);
+
 }  // namespace stereomotion

@@ -22,6 +22,12 @@ struct MaskRecord {
   std::int64_t pixels = 0;
 };
 
+/// Names a body of a run, and where its files are.
+struct BodyRecord {
+  std::string name;
+  std::string folder;  ///< within RUN; ".": RUN itself
+};
+
 /// Holds what run.json tells: how a RUN came about.
 struct RunRecord {
   std::string version;
@@ -38,6 +44,8 @@ struct RunRecord {
   int search_every = 1;
   double exposure_us = 0;  ///< given by the user for frames that do not tell theirs; 0: none
   std::vector<MaskRecord> masks;
+  std::vector<BodyRecord> bodies;
+  bool bodies_learned = false;  ///< from the recording; else from body files
   RunSummary summary;
   std::vector<std::string> warnings;  ///< besides those of `summary`
 };

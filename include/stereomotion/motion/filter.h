@@ -41,6 +41,9 @@ struct FilteredSeries {
 /// reference, so no angle wraps. Random covariances are propagated through the filter, which is
 /// linear in the data; the RTS smoother gives its own. What no filter knows is its bias: a movement
 /// faster than the cut-off is lost without a trace in the covariance.
+/// Accelerations: none from the RTS smoother (its model drives ω and v by noise), none from
+/// Butterworth within 1 / (2 cut-off) of a stretch's ends, where the point reflection decides.
+/// Stretches too short for a filter are left empty, and `description` says how many poses.
 /// Throws std::invalid_argument: cut-off at or beyond half the frame rate, odd order, ….
 FilteredSeries FilterPoses(const PoseSeries& series, const FilterOptions& options);
 

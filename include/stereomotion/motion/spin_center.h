@@ -83,9 +83,14 @@ struct SpinCenterResult {
 /// and the path's coefficients; the translation follows, t_t = p(t) − R_t c. Linear least squares
 /// in the poses' covariances starts; Ceres minimises the whitened residuals of what was observed
 /// (image points, space points or poses). Covariances come from the undamped normal equations with
-/// the rotations (and an unknown structure) eliminated. Directions that the motion leaves open are
-/// left out and named. Throws std::invalid_argument for data that breaks its own rules (indices,
-/// times, covariances).
+/// the rotations (and an unknown structure) eliminated. They hold the second order of the
+/// rotations' noise (errors in variables: A⁻¹ G A⁻¹ with the observed Hessian A and Gauss–Newton's
+/// G), so they stay true where the range of rotation is only a few times the noise. Directions that
+/// the motion leaves open are left out and named. Of one rod, whose roll nobody measures, the
+/// centre is sought on the rod's own line. All laws are weighed on the same frames: `left_out` are
+/// those that contradict the widest law in question. With `path_psd_mm2_s3` the states'
+/// acceleration has infinite variance. Throws std::invalid_argument for data that breaks its own
+/// rules (indices, times, covariances).
 SpinCenterResult FindSpinCenter(const MotionData& data, const SpinCenterOptions& options = {});
 
 }  // namespace stereomotion

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "stereomotion/motion/motion_data.h"
@@ -25,6 +26,10 @@ struct BodyVelocity {
   Eigen::Matrix<double, 12, 12> covariance = Eigen::Matrix<double, 12, 12>::Zero();
   bool has_acceleration = false;
   int window = 0;  ///< poses used
+  int degree = 0;  ///< of the polynomial: 1, 2 or 4
+  /// Rods alone in the window: unit vector about which the body's turning is not seen. There ω and
+  /// α are given as zero and their variance is infinite (zero is written).
+  std::optional<Eigen::Vector3d> open_axis_in_world;
 };
 
 struct VelocityOptions {
@@ -37,8 +42,13 @@ struct VelocityOptions {
 std::vector<BodyVelocity> EstimateVelocities(const PoseSeries& series,
                                              const VelocityOptions& options = {});
 
-/// Moves the reference from the body's origin to another body point: v and a of that point.
-BodyVelocity VelocityOfPoint(const BodyVelocity& origin, const Rigid3& world_from_body,
-                             const Eigen::Vector3d& point_in_body_mm);
+/// Moves the reference from the body's origin to another body point: v and a of that point. The
+/// lever R · point is itself as uncertain as the pose: ω × (δθ × lever) is no smaller than the
+/// noise of ω × lever where windows are long. `rotation_covariance_rad2` (of the pose's δθ) adds
+/// it; it is taken as independent of ω, as it is in a symmetrical window.
+BodyVelocity VelocityOfPoint(
+    const BodyVelocity& origin, const Rigid3& world_from_body,
+    const Eigen::Vector3d& point_in_body_mm,
+    const Eigen::Matrix3d& rotation_covariance_rad2 = Eigen::Matrix3d::Zero());
 
 }  // namespace stereomotion

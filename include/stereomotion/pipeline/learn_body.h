@@ -30,10 +30,22 @@ struct LearnedBodies {
   std::vector<std::string> warnings;
 };
 
-/// Learns the bodies of a recording: balls followed in 3D → groups that keep their mutual distances
-/// → rods (collinear balls) → structure and motion refined together (`RefineStructure`).
-/// Body frame: origin at the balls' centroid, axes as the world's in the first pair with a pose.
-/// `setup.bodies` is not read. Balls that rest are the background's, unless nothing else moves.
+/// Learns the bodies of a recording.
+///
+/// Balls of both images are paired by an epipolar gate that the recording itself tells → points
+/// that keep their mutual distances are groups, found in each pair by those distances alone
+/// (`GroupBalls` in the sources), so that neither large motion nor gaps matter → a group that
+/// moves, with rods (3 to 9 balls on a line; 5 is the design), is a body → its structure and motion
+/// are refined together (`RefineStructure`), the recording is measured with it, and it is refined
+/// again on all of that.
+///
+/// Body frame: origin at the balls' centroid, axes as the world's in the first pair with a pose
+/// (from the first round, so to its noise). The covariance is random and common part (rig)
+/// together, in that gauge: rank 3M − 6. Balls that rest are the background's; where nothing moves,
+/// what rests is taken for a body if it has a rod of five, with a warning. Balls on no rod are left
+/// out, with a warning. A body of one rod only is not learned: its roll is open. The cameras must
+/// be synchronous: a lag bends the body; it is warned of where it is evident. `setup.bodies` is not
+/// read. Throws std::invalid_argument for cameras that the rig does not have.
 Expected<LearnedBodies, LearnBodyFailure> LearnBodies(const PairSource& source,
                                                       const MeasureSetup& setup,
                                                       const LearnBodyOptions& options,

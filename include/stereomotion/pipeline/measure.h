@@ -16,12 +16,12 @@
 
 namespace stereomotion {
 
-/// Says what is measured: which cameras of the rig see which body.
+/// Says what is measured: which cameras of the rig see which bodies.
 struct MeasureSetup {
   Rig rig;
   int left_camera = 0;  ///< index into `rig.cameras`
   int right_camera = 1;
-  Body body;
+  std::vector<Body> bodies;         ///< one or more, told apart by their rods
   ImageMask left_mask, right_mask;  ///< of the cameras' image sizes; empty: none
 };
 
@@ -39,15 +39,19 @@ struct MeasureOptions {
   std::int64_t count = -1;  ///< −1: to the end
 };
 
-/// Takes each measurement in frame order; returns false to end the run (disk full).
+/// Takes each measurement in frame order, of a pair body by body in the order of
+/// `MeasureSetup::bodies`; returns false to end the run (disk full).
 using MeasurementSink = std::function<bool(const PairMeasurement&)>;
 
-/// Measures a recording: learn the noise → per pair read, detect (in parallel), track the pose,
-/// move it to mid-exposure, give every ball its 3D point, propagate the rig's covariance → `sink`,
-/// in frame order, two pairs behind (a pose's motion is told by those around it).
+/// Measures a recording: learn the noise → per pair read, detect (in parallel), track every body's
+/// pose, move it to mid-exposure, give every ball its 3D point, propagate the rig's covariance →
+/// `sink`, in frame order, two pairs behind (a pose's motion is told by those around it).
 ///
-/// The measurements do not depend on `threads`. `stop` (may be null) ends the run after the pairs in
-/// hand. Memory does not grow with the recording's length.
+/// Balls are detected once; a detection serves one body only (`BodyTrackers` in the sources says
+/// which).
+///
+/// The measurements do not depend on `threads`. `stop` (may be null) ends the run after the pairs
+/// in hand. Memory does not grow with the recording's length.
 RunSummary MeasureRecording(const PairSource& source, const MeasureSetup& setup,
                             const MeasureOptions& options, const MeasurementSink& sink,
                             const std::atomic<bool>* stop = nullptr);

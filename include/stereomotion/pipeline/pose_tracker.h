@@ -38,6 +38,24 @@ class PoseTracker {
                                       const std::vector<BallObservation>& left_balls,
                                       const std::vector<BallObservation>& right_balls);
 
+  // `Track` in three steps, for several bodies that share the detections. Only the last changes
+  // what is known.
+
+  /// Finds the next pose from the prediction alone; nothing unless it explains every ball that
+  /// should be seen and no ball can have been taken for its neighbour.
+  [[nodiscard]] std::optional<PoseFix> Follow(
+      std::int64_t timestamp_ns, const std::vector<BallObservation>& left_balls,
+      const std::vector<BallObservation>& right_balls) const;
+  /// Finds the next pose by whatever explains more: prediction, or acquisition from nothing.
+  [[nodiscard]] Expected<PoseFix, PoseStatus> Search(
+      std::int64_t timestamp_ns, const std::vector<BallObservation>& left_balls,
+      const std::vector<BallObservation>& right_balls) const;
+  /// Takes over a pose found by `Follow` or `Search`; kInconsistent where it is to be withheld. The
+  /// balls are those that the pose could have explained.
+  Expected<PoseFix, PoseStatus> Accept(std::int64_t timestamp_ns, PoseFix fix,
+                                       const std::vector<BallObservation>& left_balls,
+                                       const std::vector<BallObservation>& right_balls);
+
  private:
   struct TimedPose {
     std::int64_t timestamp_ns = 0;
@@ -48,10 +66,14 @@ class PoseTracker {
     double error_mm = 0;  ///< bound on how far a ball may be off; infinite where unknown
   };
   [[nodiscard]] std::optional<Prediction> Predict(std::int64_t timestamp_ns) const;
-  [[nodiscard]] Expected<PoseFix, PoseStatus> FindPose(
-      std::int64_t timestamp_ns, const Rigid3& previous,
-      const std::vector<BallObservation>& left_balls,
-      const std::vector<BallObservation>& right_balls) const;
+  /// Holds what the prediction led to.
+  struct Followed {
+    std::optional<PoseFix> fix;
+    bool identity_safe = false;  ///< no ball can have been taken for its neighbour
+    bool complete = false;       ///< safe, and every ball that should be seen is explained
+  };
+  [[nodiscard]] Followed FollowPrediction(std::int64_t timestamp_ns, const PoseView& view) const;
+  [[nodiscard]] Rigid3 Previous() const;
   [[nodiscard]] Expected<PoseFix, PoseStatus> Choose(
       const PoseView& view, const std::optional<PoseFix>& tracked, bool identity_safe,
       const Expected<PoseFix, PoseStatus>& acquired) const;

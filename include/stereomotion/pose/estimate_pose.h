@@ -62,10 +62,10 @@ Expected<PoseEstimate, PoseStatus> EstimatePose(
     const std::vector<BallAssignment>& assignments, const Rigid3& initial_world_from_body,
     const PoseOptions& options = {}, std::vector<BallAssignment>* used = nullptr);
 
-/// Propagates a rig's covariance and the body's σ to the pose's common standard uncertainty (δθ
-/// [rad], δt [mm]), first order: ∂pose/∂c = −H⁻¹ JᵀW ∂r/∂c. `left`/`right` index the rig's cameras;
-/// the rows of other cameras, and of a rig without covariance, count nothing. Zero about a free
-/// axis.
+/// Propagates a rig's covariance and the body's (`CovarianceOfBalls`) to the pose's common standard
+/// uncertainty (δθ [rad], δt [mm]), first order: ∂pose/∂c = −H⁻¹ JᵀW ∂r/∂c. `left`/`right` index
+/// the rig's cameras; the rows of other cameras, and of a rig without covariance, count nothing.
+/// Zero about a free axis.
 Vector6d CalibrationUncertainty(const Rig& rig, int left, int right, const Body& body,
                                 const std::vector<BallObservation>& left_balls,
                                 const std::vector<BallObservation>& right_balls,

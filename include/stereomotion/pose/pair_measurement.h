@@ -47,8 +47,9 @@ struct MatchedDetection {
   std::optional<Eigen::Vector2d> center_px;  ///< projected centre, where the depth is known
 };
 
-/// Holds everything that was measured in one frame pair.
+/// Holds everything that was measured of one body in one frame pair.
 struct PairMeasurement {
+  int body = 0;  ///< index into the bodies that are measured
   std::int64_t frame = -1;
   std::int64_t timestamp_ns = 0;
   PoseStatus status = PoseStatus::kLost;

@@ -1,0 +1,127 @@
+#include "motion/center_verdict.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace stereomotion {
+namespace {
+
+/// Two significant digits: more would claim to know the uncertainty itself.
+std::string Number(double value) {
+  if (!(value > 0)) return "0";
+  const int decimals = std::max(0, 1 - static_cast<int>(std::floor(std::log10(value))));
+  char text[64];
+  if (value >= 1e4) {
+    std::snprintf(text, sizeof text, "%.2g", value);
+  } else {
+    std::snprintf(text, sizeof text, "%.*f", decimals, value);
+  }
+  return text;
+}
+
+std::string PlusMinus(double u_mm) {
+  return u_mm >= 1e3 ? "± " + Number(1e-3 * u_mm) + " m" : "± " + Number(u_mm) + " mm";
+}
+
+/// Standard uncertainties along the principal directions of the covariance, ascending; the largest
+/// one's direction.
+struct Principal {
+  Eigen::Vector3d u_mm, longest;
+};
+
+Principal PrincipalOf(const Eigen::Matrix3d& covariance_mm2) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance_mm2);
+  return {solver.eigenvalues().cwiseMax(0).cwiseSqrt(), solver.eigenvectors().col(2)};
+}
+
+/// How well one centre is known.
+std::string Spread(const CenterProblem& problem, const SpinCenter& center) {
+  /// Directions whose uncertainties differ by less are not told apart in words.
+  constexpr double kAlike = 3;
+  constexpr double kAlongAxis = 0.9;  // cosine of 26°
+  const Principal principal = PrincipalOf(center.covariance_mm2);
+  if (problem.one_rod) return PlusMinus(principal.u_mm[2]) + " along the rod";
+  if (center.free_axis_in_body) return PlusMinus(principal.u_mm[2]) + " across the axis";
+  if (principal.u_mm[2] < kAlike * principal.u_mm[1]) return PlusMinus(principal.u_mm[2]);
+  const bool along = problem.main_axis_in_body &&
+                     std::abs(problem.main_axis_in_body->dot(principal.longest)) > kAlongAxis;
+  return PlusMinus(principal.u_mm[1]) + (along ? " across and " : " in two directions and ") +
+         PlusMinus(principal.u_mm[2]) + (along ? " along the axis" : " in the third");
+}
+
+std::string Known(const CenterProblem& problem, const SpinCenter& center) {
+  return "centre known to " + Spread(problem, center) +
+         (center.free_axis_in_body ? " and not at all along it" : "");
+}
+
+std::string OtherLaws(const CenterProblem& problem, const SpinCenterResult& result) {
+  std::string text;
+  for (const LawFit& fit : result.laws) {
+    if (fit.law == PathLaw::kFree) continue;
+    text += text.empty() ? "" : "; ";
+    text += std::string(LawWord(fit.law)) + ": " +
+            (fit.center ? Spread(problem, *fit.center) : "not determined") +
+            (fit.adequate ? "" : " (refuted)");
+  }
+  return "by law: " + text;
+}
+
+std::string Basis(const SpinCenterResult& result) {
+  const std::string law(LawWord(result.law));
+  if (result.law == PathLaw::kFree) return "path free, on the stated noise of its acceleration";
+  if (result.law_given) return "law " + law + " as given";
+  if (result.evidence_open) return "law " + law + " taken, though a narrower one fits as well";
+  return "law " + law;
+}
+
+std::string Outcome(const CenterProblem& problem, const SpinCenterResult& result) {
+  if (problem.frames.size() < 2) return "too few poses to tell a spin centre";
+  if (!problem.turns) {
+    return "no rotation beyond the noise: all points of the body move alike, no spin centre";
+  }
+  if (result.center) return Known(problem, *result.center) + "; " + Basis(result);
+  if (result.law == PathLaw::kFree) {
+    if (result.law_given) return "a free path tells no spin centre";
+    return std::string("no law of the path fits, so no spin centre is told") +
+           (problem.one_rod ? " (one rod tells only a centre on its own line)" : "");
+  }
+  return "spin centre not determined; " + Basis(result);
+}
+
+}  // namespace
+
+double RangeOfRotation(const std::vector<ObservedFrame>& frames) {
+  constexpr int kRounds = 8;
+  double range_rad = 0;
+  std::size_t from = 0;
+  for (int round = 0; round < kRounds && !frames.empty(); ++round) {
+    std::size_t farthest = from;
+    double largest_rad = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const double angle_rad =
+          frames[from].world_from_body.rotation.angularDistance(frames[i].world_from_body.rotation);
+      if (angle_rad <= largest_rad) continue;
+      largest_rad = angle_rad;
+      farthest = i;
+    }
+    if (largest_rad <= range_rad) break;
+    range_rad = largest_rad;
+    from = farthest;
+  }
+  return range_rad;
+}
+
+std::string CenterVerdict(const CenterProblem& problem, const SpinCenterResult& result) {
+  constexpr double kDegrees = 57.29577951308232;
+  std::string text;
+  if (problem.turns) {
+    text = "range of rotation " + Number(kDegrees * result.range_of_rotation_rad) + "°: ";
+  }
+  text += Outcome(problem, result);
+  if (problem.turns) text += " (" + OtherLaws(problem, result) + "; ± standard uncertainty)";
+  return text;
+}
+
+}  // namespace stereomotion

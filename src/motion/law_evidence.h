@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "stereomotion/motion/spin_center.h"
+
+namespace stereomotion {
+
+/// Holds the outcome of weighing the laws.
+struct LawChoice {
+  PathLaw law = PathLaw::kFree;
+  bool evidence_open = false;
+};
+
+/// Marks which laws are not refuted: F test (Paulson 1942's approximation) of what the law adds to
+/// χ² against the noise that the frames' own poses show (at least the stated one), level 1e-3;
+/// where poses are all that was observed, χ² test with the slack that real σ need (significance.h).
+/// The last fit is the free one.
+void MarkAdequate(std::vector<LawFit>& fits);
+
+/// Chooses among fits ordered from narrow to wide, the last one free: the narrowest adequate law
+/// that BIC prefers strongly (by more than 6; Kass & Raftery 1995) to every wider one. Where
+/// the difference is open the wider law is taken. χ² is divided by the noise's scale where the
+/// frames' own poses show more noise than stated.
+LawChoice ChooseLaw(const std::vector<LawFit>& fits);
+
+}  // namespace stereomotion

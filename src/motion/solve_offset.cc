@@ -1,0 +1,101 @@
+#include <Eigen/Cholesky>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "motion/offset_problem.h"
+
+namespace stereomotion {
+namespace {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// Lays the upper triangle of the band out as a sparse matrix.
+Sparse SparseHessian(const OffsetNormals& normals) {
+  const int size = static_cast<int>(normals.hessian.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (int k = 0; k < size; ++k) {
+    for (int d = 0; d <= OffsetNormals::kBand && k + d < size; ++d) {
+      for (int a = 0; a < 6; ++a) {
+        for (int b = d == 0 ? a : 0; b < 6; ++b) {
+          entries.emplace_back(6 * k + a, 6 * (k + d) + b, normals.hessian[k](a, 6 * d + b));
+        }
+      }
+    }
+  }
+  Sparse matrix(6 * size, 6 * size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+/// Moves poses and offset by one Gauss–Newton step; returns how much χ² should fall by it, or
+/// nothing where the equations are singular.
+std::optional<double> Step(const OffsetNormals& normals, bool fixed, OffsetSolution& at) {
+  Eigen::MatrixXd right(normals.gradient.size(), 2);
+  right << normals.gradient, normals.cross;
+  const auto solved = SolvePoses(normals, right);
+  if (!solved) return std::nullopt;
+  double step_s = 0;
+  if (!fixed) {
+    const double information = normals.offset_information - normals.cross.dot(solved->col(1));
+    if (!(information > 0)) return std::nullopt;
+    step_s = -(normals.offset_gradient - normals.cross.dot(solved->col(0))) / information;
+  }
+  const Eigen::VectorXd step = -solved->col(0) - step_s * solved->col(1);
+  for (std::size_t k = 0; k < at.poses.size(); ++k) {
+    at.poses[k] = Perturb(at.poses[k], step.segment<6>(6 * static_cast<int>(k)));
+  }
+  at.offset_s += step_s;
+  return -(step.dot(normals.gradient) + step_s * normals.offset_gradient);
+}
+
+}  // namespace
+
+std::optional<Eigen::MatrixXd> SolvePoses(const OffsetNormals& normals,
+                                          const Eigen::MatrixXd& right) {
+  const Eigen::SimplicialLDLT<Sparse, Eigen::Upper> factor(SparseHessian(normals));
+  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) return std::nullopt;
+  return factor.solve(right);
+}
+
+Matrix6d PoseCovariance(const OffsetNormals& normals, int k) {
+  const int size = static_cast<int>(normals.hessian.size());
+  const int from = std::max(k - OffsetNormals::kBand, 0);
+  const int to = std::min(k + OffsetNormals::kBand, size - 1);
+  Eigen::MatrixXd window = Eigen::MatrixXd::Zero(6 * (to - from + 1), 6 * (to - from + 1));
+  for (int a = from; a <= to; ++a) {
+    for (int b = a; b <= std::min(to, a + OffsetNormals::kBand); ++b) {
+      const Matrix6d block = normals.hessian[a].block<6, 6>(0, 6 * (b - a));
+      window.block<6, 6>(6 * (a - from), 6 * (b - from)) = block;
+      if (b > a) window.block<6, 6>(6 * (b - from), 6 * (a - from)) = block.transpose();
+    }
+  }
+  Eigen::MatrixXd unit = Eigen::MatrixXd::Zero(window.rows(), 6);
+  unit.middleRows<6>(6 * (k - from)).setIdentity();
+  const Eigen::MatrixXd solved = window.llt().solve(unit);
+  const Matrix6d covariance = solved.middleRows<6>(6 * (k - from));
+  return (covariance + covariance.transpose()) / 2;
+}
+
+std::optional<OffsetSolution> SolveOffset(const OffsetProblem& problem, double offset_s,
+                                          bool fixed) {
+  constexpr int kMaxIterations = 20;
+  constexpr double kSmallFall = 1e-6;  // of χ²: a step of a thousandth of the uncertainty
+  constexpr double kReachPeriods = 1.5;
+  OffsetSolution at{offset_s, problem.StartPoses(), {}};
+  for (int i = 0; i < kMaxIterations; ++i) {
+    auto normals = problem.Linearize(at.poses, at.offset_s);
+    if (!normals) return std::nullopt;
+    at.normals = std::move(*normals);
+    const auto fall = Step(at.normals, fixed, at);
+    if (!fall || std::abs(at.offset_s) > kReachPeriods * problem.period_s()) return std::nullopt;
+    if (*fall > kSmallFall * std::max(1.0, 1e-6 * at.normals.chi2)) continue;
+    auto last = problem.Linearize(at.poses, at.offset_s);
+    if (!last) return std::nullopt;
+    at.normals = std::move(*last);
+    return at;
+  }
+  return std::nullopt;
+}
+
+}  // namespace stereomotion

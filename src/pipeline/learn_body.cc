@@ -1,0 +1,202 @@
+#include "stereomotion/pipeline/learn_body.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+
+#include "learn_points.h"
+#include "learn_shape.h"
+#include "stereomotion/motion/refine_structure.h"
+#include "stereomotion/motion/time_offset.h"
+#include "stereomotion/pipeline/motion_data_of.h"
+
+namespace stereomotion {
+namespace {
+
+/// Residuals (χ² per degree of freedom) beyond which the refined body is doubtful.
+constexpr double kDoubtfulChi2Dof = 2;
+
+const RigCamera& CameraOf(const MeasureSetup& setup, int camera) {
+  const int index = camera == 0 ? setup.left_camera : setup.right_camera;
+  if (index < 0 || index >= static_cast<int>(setup.rig.cameras.size())) {
+    throw std::invalid_argument("LearnBodies needs two cameras of the rig");
+  }
+  return setup.rig.cameras[static_cast<std::size_t>(index)];
+}
+
+bool HasEnoughBalls(const std::vector<PointCloud>& frames, const GroupOptions& options) {
+  const auto least = static_cast<std::size_t>(options.match.min_points);
+  const auto enough = std::count_if(frames.begin(), frames.end(),
+                                    [&](const PointCloud& frame) { return frame.size() >= least; });
+  return enough >= options.min_frames;
+}
+
+/// Puts a refined structure into a body: places, covariance (random and common part together: who
+/// reads the file has another recording, or another rig).
+void TakeStructure(const Structure& structure, Body& body) {
+  auto next = structure.balls_in_body_mm.begin();
+  for (Rod& rod : body.rods) {
+    for (Eigen::Vector3d& ball : rod.balls_in_body_mm) ball = *next++;
+  }
+  body.covariance_mm2 = structure.covariance_mm2;
+  if (structure.calibration_covariance_mm2.size() > 0) {
+    body.covariance_mm2 += structure.calibration_covariance_mm2;
+  }
+}
+
+/// Returns whether the body's geometry is refined now.
+bool Refine(const MotionData& data, Body& body, std::vector<std::string>& warnings) {
+  const auto structure = RefineStructure(data);
+  if (!structure) return false;
+  TakeStructure(*structure, body);
+  const double level = structure->chi2 / std::max(1, structure->dof);
+  if (level > kDoubtfulChi2Dof) {
+    warnings.push_back(body.name + ": residuals are " + std::to_string(std::sqrt(level)) +
+                       " times the image noise; the rig may be wrong or the body not rigid");
+  }
+  return true;
+}
+
+/// A lag bends the body, whose residuals then do not tell.
+void WarnOfLag(const MotionData& data, const Body& body, std::vector<std::string>& warnings) {
+  const auto offset = EstimateTimeOffset(data);
+  if (!offset || !offset->significant) return;
+  warnings.push_back(body.name + ": the right camera seems to be " +
+                     std::to_string(offset->offset_s) +
+                     " s late by its own timestamps; the learned body is bent by that");
+}
+
+/// Measures the recording with the bodies found so far, which also sees balls that were hidden from
+/// one camera or partly, and refines them on all of that.
+bool RefineOnRun(const PairSource& source, MeasureSetup setup, const MeasureOptions& options,
+                 const std::vector<int>& frames_so_far, LearnedBodies& learned,
+                 const std::atomic<bool>* stop) {
+  setup.bodies = learned.bodies;
+  std::vector<PairMeasurement> measurements;
+  const auto sink = [&](const PairMeasurement& measurement) {
+    measurements.push_back(measurement);
+    measurements.back().left.clear();  // the detections themselves, which nobody needs
+    measurements.back().right.clear();
+    return true;
+  };
+  if (MeasureRecording(source, setup, options, sink, stop).interrupted) return false;
+  for (std::size_t i = 0; i < setup.bodies.size(); ++i) {
+    Body& body = learned.bodies[i];
+    MotionData data = MotionDataOf(setup, measurements, static_cast<int>(i));
+    data.structure_known = false;
+    data.structure_covariance_mm2.resize(0, 0);
+    const auto found = std::count_if(data.frames.begin(), data.frames.end(),
+                                     [](const auto& frame) { return frame.pose.measured; });
+    // Less than before: the tracker refuses the body, and the first answer is the better one.
+    if (found * 2 < frames_so_far[i]) {
+      learned.warnings.push_back(body.name + ": found again in only " + std::to_string(found) +
+                                 " pairs");
+      continue;
+    }
+    WarnOfLag(data, body, learned.warnings);
+    if (!Refine(data, body, learned.warnings) && body.covariance_mm2.size() == 0) {
+      learned.warnings.push_back(body.name +
+                                 ": its geometry could not be refined; it is only rough");
+    }
+  }
+  return true;
+}
+
+/// One body, with all that the first round knows of it.
+struct FirstRound {
+  LearnedShape shape;
+  const BallGroup* group = nullptr;
+};
+
+/// Three things that rest on a line are no rod yet; five are the design.
+bool HasFullRod(const Body& body) {
+  constexpr std::size_t kDesign = 5;
+  return std::any_of(body.rods.begin(), body.rods.end(),
+                     [](const Rod& rod) { return rod.balls_in_body_mm.size() >= kDesign; });
+}
+
+std::vector<FirstRound> FindShapes(const std::vector<BallGroup>& groups, bool moving,
+                                   const std::vector<LearnPair>& pairs, const MeasureSetup& setup,
+                                   double diameter_mm) {
+  std::vector<FirstRound> shapes;
+  for (const BallGroup& group : groups) {
+    if (group.moves != moving) continue;
+    auto shape = ShapeOf(group, pairs, CameraOf(setup, 0), CameraOf(setup, 1), diameter_mm);
+    if (shape && (moving || HasFullRod(shape->body))) {
+      shapes.push_back({std::move(*shape), &group});
+    }
+  }
+  std::stable_sort(shapes.begin(), shapes.end(), [](const FirstRound& a, const FirstRound& b) {
+    const auto place = [](const FirstRound& x) {
+      const auto first =
+          std::find_if(x.shape.world_from_body.begin(), x.shape.world_from_body.end(),
+                       [](const auto& pose) { return pose.has_value(); });
+      return (*first)->translation_mm.x();
+    };
+    return std::make_tuple(-static_cast<double>(a.shape.group_balls.size()), place(a)) <
+           std::make_tuple(-static_cast<double>(b.shape.group_balls.size()), place(b));
+  });
+  return shapes;
+}
+
+void NameBodies(std::vector<FirstRound>& shapes) {
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    shapes[i].shape.body.name = shapes.size() == 1 ? "body" : "body" + std::to_string(i + 1);
+  }
+}
+
+LearnedBodies RefineFirst(const std::vector<FirstRound>& shapes,
+                          const std::vector<LearnPair>& pairs, const MeasureSetup& setup,
+                          bool moving) {
+  LearnedBodies learned;
+  for (const FirstRound& first : shapes) {
+    Body body = first.shape.body;
+    if (!moving)
+      learned.warnings.push_back(body.name + ": nothing moves; it may be a part of the background");
+    if (first.shape.left_over > 0) {
+      learned.warnings.push_back(body.name + ": " + std::to_string(first.shape.left_over) +
+                                 " balls that lie on no rod are left out");
+    }
+    std::vector<std::string> replaced;  // by what the second round says
+    Refine(ObservationsOfShape(first.shape, *first.group, pairs, setup), body, replaced);
+    learned.bodies.push_back(std::move(body));
+  }
+  return learned;
+}
+
+}  // namespace
+
+Expected<LearnedBodies, LearnBodyFailure> LearnBodies(const PairSource& source,
+                                                      const MeasureSetup& setup,
+                                                      const LearnBodyOptions& options,
+                                                      const std::atomic<bool>* stop) {
+  const RigCamera &left = CameraOf(setup, 0), &right = CameraOf(setup, 1);
+  MeasureOptions measure = options.measure;
+  measure.count =
+      measure.count < 0 ? options.max_pairs : std::min(measure.count, options.max_pairs);
+  const auto pairs = DetectPairs(source, setup, measure, stop);
+  if (!pairs) return Unexpected{LearnBodyFailure::kInterrupted};
+  const LearnedPoints points = FindPoints(*pairs, left, right);
+  const GroupOptions grouping;
+  if (!HasEnoughBalls(points.frames, grouping)) return Unexpected{LearnBodyFailure::kTooFewBalls};
+  const std::vector<BallGroup> groups = GroupBalls(points.frames, grouping);
+  if (groups.empty()) return Unexpected{LearnBodyFailure::kNoGroup};
+  const bool moving =
+      std::any_of(groups.begin(), groups.end(), [](const BallGroup& group) { return group.moves; });
+  auto shapes = FindShapes(groups, moving, *pairs, setup, options.ball_diameter_mm);
+  if (shapes.empty()) {
+    return Unexpected{moving ? LearnBodyFailure::kNoGroup : LearnBodyFailure::kNoMotion};
+  }
+  NameBodies(shapes);
+  LearnedBodies learned = RefineFirst(shapes, *pairs, setup, moving);
+  std::vector<int> found;
+  for (const FirstRound& first : shapes) found.push_back(first.group->CountFrames());
+  if (!RefineOnRun(source, setup, measure, found, learned, stop)) {
+    return Unexpected{LearnBodyFailure::kInterrupted};
+  }
+  return learned;
+}
+
+}  // namespace stereomotion
