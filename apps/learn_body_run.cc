@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "progress.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/body_folder.h"
 #include "stereomotion/pipeline/learn_body.h"
@@ -58,7 +59,11 @@ std::optional<int> LearnBodiesOf(const TrackOptions& options, TrackInputs& input
       learn.max_pairs, inputs.options.count < 0 ? rest : std::min(rest, inputs.options.count));
   spdlog::info("no --body: learning the bodies from {} pairs", pairs);
   const std::atomic<bool>& stop = CatchStopSignals();
-  auto learned = LearnBodies(*inputs.recording, inputs.setup, learn, &stop);
+  constexpr std::int64_t kRounds = 2;  // every pair is looked at twice
+  Progress progress(kRounds * pairs, common.quiet);
+  auto learned =
+      LearnBodies(*inputs.recording, inputs.setup, learn, &stop, [&] { progress.Step(); });
+  progress.Clear();
   if (!learned) {
     const bool interrupted = learned.error() == LearnBodyFailure::kInterrupted;
     return Refuse(ReasonText(learned.error()) + (interrupted ? "" : kOrGiveBody));

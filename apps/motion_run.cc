@@ -78,8 +78,8 @@ std::string RunJoints(const fs::path& folder, const std::vector<BodyMotion>& bod
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
       const std::string &first = bodies[i].name, &second = bodies[j].name;
       const auto joint = FindJoint(bodies[i].analysis.series, bodies[j].analysis.series);
-      const std::string label = fmt::format("joint of {} and {}", first, second);
-      text += fmt::format("  {:<26}{}\n", label,
+      const std::string label = fmt::format("joint of {} and {}:", first, second);
+      text += fmt::format("  {:<25} {}\n", label,
                           joint ? joint->verdict : std::string(JointFailureText(joint.error())));
       if (!joint) continue;
       const std::string name =

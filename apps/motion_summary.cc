@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "motion_run.h"
+#include "stereomotion/io/motion_writer.h"
 
 namespace stereomotion::app {
 namespace {
@@ -64,17 +65,13 @@ std::string Law(const SpinCenterResult& spin) {
   return text + (spin.evidence_open ? " (evidence open)" : " (by evidence)");
 }
 
-// The middle of the run, as in motion.json.
-const CenterState& MiddleState(const SpinCenter& center) {
-  return center.states[center.states.size() / 2];
-}
-
-std::string CenterLines(const SpinCenterResult& spin) {
+std::string CenterLines(const MotionAnalysis& analysis) {
+  const SpinCenterResult& spin = analysis.spin;
   std::string text = Line("law of the spin centre", Law(spin));
   if (const std::string evidence = Evidence(spin); !evidence.empty()) text += Line("", evidence);
   if (!spin.center) return text + Line("spin centre", spin.verdict);
   const SpinCenter& center = *spin.center;
-  const CenterState& state = MiddleState(center);
+  const CenterState& state = center.states[MiddleFrame(analysis.series)];
   text +=
       Line("spin centre in body, mm", VectorWithSigma(center.in_body_mm, center.covariance_mm2));
   text += Line("  in world, mid-run, mm",
@@ -102,7 +99,12 @@ std::string AxisLines(const MeanAxis& axis) {
   text += Line(
       "  through, mm",
       fmt::format("{} ± {:.2g}", Vector(axis.point_in_world_mm, axis.u_point_mm), axis.u_point_mm));
-  return text + Line("  pitch, mm/rad", WithSigma(axis.pitch_mm_per_rad, axis.u_pitch));
+  text += Line("  pitch, mm/rad", WithSigma(axis.pitch_mm_per_rad, axis.u_pitch));
+  if (!axis.common) return text;
+  std::string common = fmt::format("± {:.2g}°", kDegPerRad * axis.common->ucal_direction_rad);
+  if (axis.common->ucal_point_mm) common += fmt::format(", {:.2g} mm", *axis.common->ucal_point_mm);
+  if (axis.common->ucal_pitch) common += fmt::format(", {:.2g} mm/rad", *axis.common->ucal_pitch);
+  return text + Line("  common part", common);
 }
 
 // Smallest and largest speed of the centre or the origin, with the typical uncertainty.
@@ -138,14 +140,14 @@ std::string MotionSummary(const MotionAnalysis& analysis) {
                                                 series.size(), span_s));
   if (analysis.spin.laws.empty()) return text + Line("", analysis.spin.verdict);
   text += RotationLines(analysis);
-  text += CenterLines(analysis.spin);
+  text += CenterLines(analysis);
   if (analysis.axis) text += AxisLines(*analysis.axis);
   if (analysis.time_offset) {
     constexpr double kMsPerS = 1000;
     text += Line(
         "right camera late by, ms",
         WithSigma(kMsPerS * analysis.time_offset->offset_s, kMsPerS * analysis.time_offset->u_s) +
-            (analysis.time_offset->significant ? " (corrected)" : " (not significant)"));
+            (analysis.time_offset_applied ? " (corrected)" : " (not corrected)"));
   }
   return text;
 }

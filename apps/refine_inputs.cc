@@ -37,6 +37,33 @@ fs::path InputFile(const RunOrigin& origin, const fs::path& run, const std::stri
   return input->path;
 }
 
+// What --refine reads: the folder of a body, and the RUN that it belongs to.
+struct Places {
+  fs::path folder, root;
+  RunOrigin origin;
+};
+
+Places FindPlaces(const fs::path& folder) {
+  Places places{folder, RootOfRun(folder), {}};
+  places.origin = ReadRunOrigin(places.root);
+  if (places.root != folder || places.origin.body_folders.empty()) return places;
+  std::string expected;
+  for (const std::string& body : places.origin.body_folders) {
+    expected += (expected.empty() ? "" : ", ") + (folder / body).string();
+  }
+  throw UserError(fmt::format("{}: has {} bodies, expected the folder of one (--refine): {}",
+                              folder.string(), places.origin.body_folders.size(), expected));
+}
+
+// Of several bodies, or a learned one, the copy beside its files.
+fs::path BodyFile(const Places& places, const std::string& given, std::vector<std::string>& notes) {
+  const fs::path copy = places.folder / "body.yaml";
+  const bool named = places.root == places.folder && places.origin.Input("body") != nullptr;
+  std::error_code ignored;
+  if (given.empty() && !named && fs::is_regular_file(copy, ignored)) return copy;
+  return InputFile(places.origin, places.root, "body", given, notes);
+}
+
 int CameraOf(const Rig& rig, const std::string& name, const fs::path& file) {
   for (std::size_t c = 0; c < rig.cameras.size(); ++c) {
     if (rig.cameras[c].name == name) return static_cast<int>(c);
@@ -79,11 +106,11 @@ void CheckBody(const Body& body, const fs::path& file) {
 }  // namespace
 
 RefineInputs LoadRefineInputs(const RefineOptionsOfRun& options) {
-  const fs::path run = options.run;
-  const RunOrigin origin = ReadRunOrigin(run);
+  const Places places = FindPlaces(options.run);
+  const RunOrigin& origin = places.origin;
   RefineInputs inputs;
-  inputs.rig_file = InputFile(origin, run, "rig", options.rig, inputs.notes);
-  const fs::path body = InputFile(origin, run, "body", options.body, inputs.notes);
+  inputs.rig_file = InputFile(origin, places.root, "rig", options.rig, inputs.notes);
+  const fs::path body = BodyFile(places, options.body, inputs.notes);
   const Rig rig = ReadRig(inputs.rig_file);
   inputs.body = ReadBody(body);
   CheckBody(inputs.body, body);
@@ -95,7 +122,8 @@ RefineInputs LoadRefineInputs(const RefineOptionsOfRun& options) {
         "{}: the refined rig has {} and {} only: the run saw nothing with the others",
         inputs.rig_file.string(), inputs.rig.cameras[0].name, inputs.rig.cameras[1].name));
   }
-  for (RunDetections& pair : ReadDetections(run, origin.left_camera, origin.right_camera)) {
+  for (RunDetections& pair :
+       ReadDetections(places.folder, origin.left_camera, origin.right_camera)) {
     if (right < left) std::swap(pair.balls[0], pair.balls[1]);
     inputs.frames.push_back({pair.frame, std::move(pair.balls)});
   }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <sstream>
 
 #include "motion_run.h"
 #include "stereomotion/io/body_folder.h"
@@ -56,6 +57,19 @@ void OrWarn(const std::string& whose, RunRecord& record, const Act& act) {
   }
 }
 
+// Takes the blanks away that make columns in a terminal.
+std::vector<std::string> Lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    std::istringstream words(line);
+    std::string joined;
+    for (std::string word; words >> word;) joined += (joined.empty() ? "" : " ") + word;
+    if (!joined.empty()) lines.push_back(joined);
+  }
+  return lines;
+}
+
 std::string MostFrequentLoss(const RunSummary& summary) {
   std::string worst = "no frame pair was read";
   std::int64_t most = 0;
@@ -84,9 +98,10 @@ void CopySetup(const fs::path& folder, const TrackOptions& options, const Measur
   WriteFilesAtomically(files);
 }
 
-std::string AnalyseCourses(const fs::path& folder, const MeasureSetup& setup,
-                           std::vector<BodyCourse>& courses, RunRecord& record) {
-  std::string text;
+MotionOutcome AnalyseCourses(const fs::path& folder, const MeasureSetup& setup,
+                             std::vector<BodyCourse>& courses, RunRecord& record) {
+  MotionOutcome outcome;
+  std::string& text = outcome.bodies;
   std::vector<BodyMotion> motions;
   for (std::size_t i = 0; i < courses.size(); ++i) {
     const std::string& name = setup.bodies[i].name;
@@ -99,18 +114,19 @@ std::string AnalyseCourses(const fs::path& folder, const MeasureSetup& setup,
       motions.push_back({name, *courses[i].motion});
     });
   }
-  OrWarn("joint: ", record, [&] { text += RunJoints(folder, motions); });
-  return text;
+  OrWarn("joint: ", record, [&] { outcome.joints = RunJoints(folder, motions); });
+  return outcome;
 }
 
 void WriteReport(const fs::path& folder, const TrackInputs& inputs, const RunRecord& record,
-                 const std::vector<BodyCourse>& courses) {
+                 const std::vector<BodyCourse>& courses, const std::string& joints) {
   const MeasureSetup& setup = inputs.setup;
   RunReport report{record,
                    {},
                    CameraOf(setup, setup.left_camera),
                    CameraOf(setup, setup.right_camera),
-                   inputs.masks};
+                   inputs.masks,
+                   Lines(joints)};
   for (const BodyCourse& course : courses) {
     report.bodies.push_back({&course.trace, course.motion ? &*course.motion : nullptr});
   }
@@ -118,7 +134,7 @@ void WriteReport(const fs::path& folder, const TrackInputs& inputs, const RunRec
 }
 
 int Finish(const fs::path& folder, const RunSummary& summary,
-           const std::vector<BodyCourse>& courses, const std::string& motion,
+           const std::vector<BodyCourse>& courses, const MotionOutcome& motion,
            const CommonOptions& common) {
   for (const auto& warning : summary.warnings) spdlog::warn(warning);
   if (summary.interrupted) spdlog::warn("interrupted: the files hold the pairs up to here");
@@ -126,7 +142,9 @@ int Finish(const fs::path& folder, const RunSummary& summary,
   std::int64_t poses = 0;
   for (const BodyCourse& course : courses) statistics.push_back(course.statistics);
   for (const BodySummary& body : summary.bodies) poses += body.poses;
-  if (!common.quiet) fmt::print("{}{}", RunTable(summary, statistics), motion);
+  if (!common.quiet) {
+    fmt::print("{}{}{}", RunTable(summary, statistics), motion.bodies, motion.joints);
+  }
   fmt::print("{}\n", folder.string());
   if (poses > 0 || summary.interrupted) return kDone;
   fmt::print(stderr, "stereomotion: no pose in the whole recording ({}); see {}\n",

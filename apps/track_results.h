@@ -27,19 +27,24 @@ struct BodyCourse {
 void CopySetup(const std::filesystem::path& folder, const TrackOptions& options,
                const MeasureSetup& setup);
 
-/// Analyses each body's motion, and the joints of several, into RUN; returns the outcome for a
-/// person. An analysis that fails becomes a warning of the record; a full disk throws
-/// `OutputError`.
-std::string AnalyseCourses(const std::filesystem::path& folder, const MeasureSetup& setup,
-                           std::vector<BodyCourse>& courses, RunRecord& record);
+/// Holds what the motion came to, for a person.
+struct MotionOutcome {
+  std::string bodies, joints;  ///< some lines each
+};
+
+/// Analyses each body's motion, and the joints of several, into RUN; returns the outcome. An
+/// analysis that fails becomes a warning of the record; a full disk throws `OutputError`.
+MotionOutcome AnalyseCourses(const std::filesystem::path& folder, const MeasureSetup& setup,
+                             std::vector<BodyCourse>& courses, RunRecord& record);
 
 /// Writes report.html. Throws `OutputError`.
 void WriteReport(const std::filesystem::path& folder, const TrackInputs& inputs,
-                 const RunRecord& record, const std::vector<BodyCourse>& courses);
+                 const RunRecord& record, const std::vector<BodyCourse>& courses,
+                 const std::string& joints);
 
 /// Tells the end of a run; returns the exit code.
 int Finish(const std::filesystem::path& folder, const RunSummary& summary,
-           const std::vector<BodyCourse>& courses, const std::string& motion,
+           const std::vector<BodyCourse>& courses, const MotionOutcome& motion,
            const CommonOptions& common);
 
 }  // namespace stereomotion::app

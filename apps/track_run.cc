@@ -103,7 +103,7 @@ int MeasureInto(const fs::path& folder, const TrackInputs& inputs, const TrackOp
   RunWriter writer(folder, {inputs.setup.bodies, record.left_camera, record.right_camera},
                    /*overwrite=*/true, record);
   std::vector<BodyCourse> courses = StartCourses(inputs);
-  std::string motion;
+  MotionOutcome motion;
   try {
     CopySetup(folder, options, inputs.setup);
     const auto failure = Measure(inputs, common, writer, courses, record.summary);
@@ -113,7 +113,7 @@ int MeasureInto(const fs::path& folder, const TrackInputs& inputs, const TrackOp
     writer.WriteRecord(record);  // a second interrupt may end what follows
     if (options.motion) motion = AnalyseCourses(folder, inputs.setup, courses, record);
     if (!record.summary.interrupted) record.state = "done";
-    WriteReport(folder, inputs, record, courses);
+    WriteReport(folder, inputs, record, courses, motion.joints);
   } catch (const OutputError&) {
     record.state = "output_failed";
     writer.WriteRecord(record);

@@ -43,6 +43,7 @@ void AddCenterBaselines(const MarkerSeries& markers_mm, const std::vector<Rigid3
 SpinCenterResult FindFixedCenter(const MotionData& data) {
   SpinCenterOptions options;
   options.law = PathLaw::kFixed;
+  options.only_given_law = true;
   options.with_calibration = false;
   return FindSpinCenter(data, options);
 }

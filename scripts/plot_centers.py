@@ -16,7 +16,10 @@ def draw_centers(rows, path):
     figure, axes = panels(len(shown), width=4 * len(shown))
     for axis, (scene, quantity) in zip(axes if len(shown) > 1 else [axes], shown):
         of_scene = select(rows, scene=scene, quantity=quantity)
-        for i, method in enumerate(dict.fromkeys(row["method"] for row in of_scene)):
+        # Ours first: of one colour everywhere. Its variants, "stereomotion, …", lie on its line.
+        shown_rows = [row for row in sorted(of_scene, key=lambda row: row["baseline"])
+                      if not row["method"].startswith("stereomotion,")]
+        for i, method in enumerate(dict.fromkeys(row["method"] for row in shown_rows)):
             own = select(of_scene, method=method)
             axis.plot([row["range_deg"] for row in own], [row["rmse"] for row in own],
                       color=SERIES[i % len(SERIES)], marker=MARKERS[i % len(SERIES)], markersize=4,

@@ -96,7 +96,8 @@ PlotRange RangeOfAll(const std::vector<double>& numbers, double margin) {
   }
   const double size = range.high - range.low;
   // One number only: around it, wide enough for ticks that differ.
-  const double around = size > 0 ? margin * size : std::max(1e-9, 0.5 * std::abs(range.high));
+  const double alone = range.high != 0 ? 0.5 * std::abs(range.high) : 1;
+  const double around = size > 0 ? margin * size : alone;
   return {range.low - around, range.high + around};
 }
 

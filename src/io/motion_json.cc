@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "json_text.h"
@@ -10,21 +11,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Index of the frame nearest to the middle of the run.
-std::size_t MiddleFrame(const PoseSeries& series) {
-  const double middle_s = SecondsAfterFirst(series, series.size() - 1) / 2;
-  std::size_t nearest = 0;
-  for (std::size_t i = 0; i < series.size(); ++i) {
-    const auto distance = [&](std::size_t k) {
-      return std::abs(SecondsAfterFirst(series, k) - middle_s);
-    };
-    if (distance(i) < distance(nearest)) nearest = i;
-  }
-  return nearest;
-}
-
 Json MatrixOrNull(const std::optional<Eigen::Matrix3d>& matrix) {
   return matrix ? JsonMatrix(*matrix) : Json(nullptr);
+}
+
+// What has no finite uncertainty is not determined: of a free path the acceleration.
+Eigen::Vector3d Determined(const Eigen::Vector3d& value, const Eigen::Vector3d& u) {
+  return u.array().isFinite().select(value, std::numeric_limits<double>::quiet_NaN());
 }
 
 // A centre, and where it is and how it moves in the middle of the run.
@@ -50,7 +43,7 @@ Json CenterJson(const std::optional<SpinCenter>& center, const PoseSeries& serie
           {"in_world_ucal_mm", JsonVectorOrNull(state.calibration_u_mm)},
           {"velocity_mm_s", JsonVector(state.velocity_mm_s)},
           {"u_velocity_mm_s", JsonVector(u.segment<3>(3))},
-          {"acceleration_mm_s2", JsonVector(state.acceleration_mm_s2)},
+          {"acceleration_mm_s2", JsonVector(Determined(state.acceleration_mm_s2, u.tail<3>()))},
           {"u_acceleration_mm_s2", JsonVector(u.tail<3>())},
           {"at_timestamp_ns", series[middle].timestamp_ns},
           {"free_axis_in_body", JsonVectorOrNull(center->free_axis_in_body)}};
@@ -62,7 +55,8 @@ Json EvidenceJson(const SpinCenterResult& spin) {
     evidence[std::string(LawWord(fit.law))] = {{"bic", JsonNumber(fit.bic)},
                                                {"chi2", JsonNumber(fit.chi2)},
                                                {"dof", fit.dof},
-                                               {"adequate", fit.adequate}};
+                                               {"adequate", fit.adequate},
+                                               {"weight", JsonNumber(fit.weight)}};
   }
   return evidence;
 }
@@ -70,9 +64,14 @@ Json EvidenceJson(const SpinCenterResult& spin) {
 Json SpinJson(const MotionAnalysis& analysis) {
   const SpinCenterResult& spin = analysis.spin;
   Json json = CenterJson(spin.center, analysis.series);
+  json["covariance_law_unknown_mm2"] = MatrixOrNull(spin.covariance_law_unknown_mm2);
+  json["in_world_covariance_law_unknown_mm2"] =
+      spin.center ? MatrixOrNull(PositionCovarianceLawUnknown(spin, MiddleFrame(analysis.series)))
+                  : Json(nullptr);
   json["law"] = LawWord(spin.law);
   json["law_given"] = spin.law_given;
   json["evidence_open"] = spin.evidence_open;
+  json["bends_otherwise"] = spin.bends_otherwise;
   json["law_evidence"] = EvidenceJson(spin);
   json["verdict"] = spin.verdict;
   Json laws = Json::object();
@@ -84,8 +83,13 @@ Json SpinJson(const MotionAnalysis& analysis) {
   return json;
 }
 
+Json NumberOrNull(const std::optional<double>& number) {
+  return number ? JsonNumber(*number) : Json(nullptr);
+}
+
 Json AxisJson(const std::optional<MeanAxis>& axis) {
   if (!axis) return nullptr;
+  const std::optional<AxisCommonPart>& common = axis->common;
   return {{"direction_in_world", JsonVector(axis->axis.in_world)},
           {"direction_in_body", JsonVector(axis->axis.in_body)},
           {"point_in_world_mm", JsonVector(axis->point_in_world_mm)},
@@ -93,6 +97,9 @@ Json AxisJson(const std::optional<MeanAxis>& axis) {
           {"u_direction_rad", JsonNumber(axis->u_direction_rad)},
           {"u_point_mm", JsonNumber(axis->u_point_mm)},
           {"u_pitch", JsonNumber(axis->u_pitch)},
+          {"ucal_direction_rad", common ? JsonNumber(common->ucal_direction_rad) : Json(nullptr)},
+          {"ucal_point_mm", common ? NumberOrNull(common->ucal_point_mm) : Json(nullptr)},
+          {"ucal_pitch", common ? NumberOrNull(common->ucal_pitch) : Json(nullptr)},
           {"covariance_in_world", JsonMatrix(axis->axis.covariance_in_world)},
           {"covariance_in_body", JsonMatrix(axis->axis.covariance_in_body)},
           {"one_axis", axis->axis.accepted},
@@ -114,9 +121,12 @@ Json RotationJson(const MotionAnalysis& analysis) {
           {"range_rad", JsonNumber(analysis.spin.range_of_rotation_rad)}};
 }
 
-Json OffsetJson(const std::optional<TimeOffset>& offset) {
+Json OffsetJson(const MotionAnalysis& analysis) {
+  const std::optional<TimeOffset>& offset = analysis.time_offset;
   if (!offset) return nullptr;
   return {{"significant", offset->significant},
+          {"applied", analysis.time_offset_applied},
+          {"ucal_s", JsonNumber(offset->calibration_u_s)},
           {"chi2_without", JsonNumber(offset->chi2_without)},
           {"chi2_with", JsonNumber(offset->chi2_with)},
           {"dof", offset->dof}};
@@ -143,6 +153,18 @@ Json NoiseScale(const SpinCenterResult& spin) {
 
 }  // namespace
 
+std::size_t MiddleFrame(const PoseSeries& series) {
+  const double middle_s = SecondsAfterFirst(series, series.size() - 1) / 2;
+  std::size_t nearest = 0;
+  for (std::size_t i = 0; i < series.size(); ++i) {
+    const auto distance = [&](std::size_t k) {
+      return std::abs(SecondsAfterFirst(series, k) - middle_s);
+    };
+    if (distance(i) < distance(nearest)) nearest = i;
+  }
+  return nearest;
+}
+
 std::string MotionJson(const MotionAnalysis& analysis) {
   const std::optional<TimeOffset>& offset = analysis.time_offset;
   const Json json = {{"format", "stereomotion-motion/1"},
@@ -151,37 +173,10 @@ std::string MotionJson(const MotionAnalysis& analysis) {
                      {"rotation", RotationJson(analysis)},
                      {"time_offset_s", offset ? JsonNumber(offset->offset_s) : Json(nullptr)},
                      {"time_offset_u_s", offset ? JsonNumber(offset->u_s) : Json(nullptr)},
-                     {"time_offset", OffsetJson(offset)},
+                     {"time_offset", OffsetJson(analysis)},
                      {"noise_scale", NoiseScale(analysis.spin)},
                      {"frames", FramesJson(analysis)},
                      {"warnings", analysis.warnings}};
-  return JsonText(json) + "\n";
-}
-
-std::string JointJson(const Joint& joint, const std::string& first_body,
-                      const std::string& second_body) {
-  Json axis = nullptr;
-  if (joint.axis_in_first && joint.axis_in_second) {
-    axis = {{"in_first", JsonVector(*joint.axis_in_first)},
-            {"in_second", JsonVector(*joint.axis_in_second)},
-            {"covariance_in_first", JsonMatrix(joint.axis_covariance_in_first)},
-            {"covariance_in_second", JsonMatrix(joint.axis_covariance_in_second)},
-            {"dispersion_rad", JsonNumber(joint.axis_dispersion_rad)}};
-  }
-  const Json json = {{"format", "stereomotion-joint/1"},
-                     {"first", first_body},
-                     {"second", second_body},
-                     {"center",
-                      {{"in_first_mm", JsonVector(joint.center_in_first_mm)},
-                       {"in_second_mm", JsonVector(joint.center_in_second_mm)},
-                       {"covariance_mm2", JsonMatrix(joint.center_covariance_mm2)},
-                       {"free_axis_in_first", JsonVectorOrNull(joint.free_axis_in_first)}}},
-                     {"axis", axis},
-                     {"range_of_rotation_rad", JsonNumber(joint.range_of_rotation_rad)},
-                     {"chi2", JsonNumber(joint.chi2)},
-                     {"dof", joint.dof},
-                     {"rms_mm", JsonNumber(joint.rms_mm)},
-                     {"verdict", joint.verdict}};
   return JsonText(json) + "\n";
 }
 

@@ -110,7 +110,7 @@ std::vector<bool> WantedFrames(const std::vector<MotionFrame>& frames, std::size
   std::size_t count = 0;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!frames[i].pose.measured) continue;
-    wanted[i] = count % stride == 0 || count < kOffsetFrames;
+    wanted[i] = measured <= kMostFramesWithPoints || count % stride == 0 || count < kOffsetFrames;
     ++count;
   }
   return wanted;

@@ -2,6 +2,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "csv_row.h"
 #include "stereomotion/geometry/so3.h"
@@ -22,8 +23,23 @@ constexpr int kCellsOfAPose = 3 + 4 + 3 + 21 + 6 + 3;  // without frame, time an
 // Where ω, v, α, a stand in the covariance of a BodyVelocity.
 enum Block { kOmega = 0, kVelocity = 3, kAlpha = 6, kAcceleration = 9 };
 
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
 Eigen::Vector3d Uncertainty(const BodyVelocity& velocity, Block block) {
-  return velocity.covariance.diagonal().segment<3>(block).cwiseSqrt();
+  Eigen::Vector3d u = velocity.covariance.diagonal().segment<3>(block).cwiseSqrt();
+  const bool turn = block == kOmega || block == kAlpha;
+  if (!turn || !velocity.open_axis_in_world) return u;
+  // A rod's turn about itself is not seen: infinite variance along it, though zero is written.
+  constexpr double kAcross = 1e-9;
+  for (int k = 0; k < 3; ++k) {
+    if (std::abs((*velocity.open_axis_in_world)[k]) > kAcross) u[k] = kUnknown;
+  }
+  return u;
+}
+
+// What has no finite uncertainty is not determined: no number, an empty cell.
+Eigen::Vector3d Determined(const Eigen::Vector3d& value, const Eigen::Vector3d& u) {
+  return u.array().isFinite().select(value, kUnknown);
 }
 
 void AppendVelocityCells(const MotionSample& sample, CsvRow& row) {
@@ -32,8 +48,11 @@ void AppendVelocityCells(const MotionSample& sample, CsvRow& row) {
     return;
   }
   const BodyVelocity& velocity = sample.velocity;
-  row.Numbers(velocity.omega_rad_s).Numbers(velocity.velocity_mm_s);
-  row.Numbers(Uncertainty(velocity, kOmega)).Numbers(Uncertainty(velocity, kVelocity));
+  const Eigen::Vector3d u_omega = Uncertainty(velocity, kOmega);
+  const Eigen::Vector3d u_velocity = Uncertainty(velocity, kVelocity);
+  row.Numbers(Determined(velocity.omega_rad_s, u_omega));
+  row.Numbers(Determined(velocity.velocity_mm_s, u_velocity));
+  row.Numbers(u_omega).Numbers(u_velocity);
   if (!sample.center) {
     row.Empty(6);
     return;
@@ -51,12 +70,12 @@ void AppendAccelerationCells(const MotionSample& sample, CsvRow& row) {
   const BodyVelocity& velocity = sample.velocity;
   std::optional<Eigen::Vector3d> alpha, u_alpha, acceleration, u_acceleration;
   if (velocity.has_acceleration) {
-    alpha = velocity.alpha_rad_s2;
     u_alpha = Uncertainty(velocity, kAlpha);
+    alpha = Determined(velocity.alpha_rad_s2, *u_alpha);
   }
   if (velocity.has_acceleration || sample.center) {
-    acceleration = velocity.acceleration_mm_s2;
     u_acceleration = Uncertainty(velocity, kAcceleration);
+    acceleration = Determined(velocity.acceleration_mm_s2, *u_acceleration);
   }
   row.NumbersOrEmpty(alpha).NumbersOrEmpty(acceleration);
   row.NumbersOrEmpty(u_alpha).NumbersOrEmpty(u_acceleration);
@@ -114,23 +133,6 @@ std::string MotionCsv(const MotionAnalysis& analysis) {
   return rows;
 }
 
-std::string AxesCsv(const MotionAnalysis& analysis) {
-  std::string rows =
-      "frame_a,frame_b,dir_x,dir_y,dir_z,point_x_mm,point_y_mm,point_z_mm,angle_rad,"
-      "pitch_mm_per_rad,u_dir_rad,u_point_mm,u_angle_rad,u_pitch\n";
-  constexpr Eigen::Index kAngle = 6, kPitch = 7;  // in ScrewAxis::covariance
-  for (const ScrewAxis& screw : analysis.screws) {
-    CsvRow row(rows);
-    row.Integer(analysis.series[screw.first].frame).Integer(analysis.series[screw.second].frame);
-    row.Numbers(screw.direction).Numbers(screw.point_mm);
-    row.Number(screw.angle_rad).Number(screw.pitch_mm_per_rad);
-    row.Number(screw.u_direction_rad).Number(screw.u_point_mm);
-    row.Number(std::sqrt(screw.covariance(kAngle, kAngle)));
-    row.Number(std::sqrt(screw.covariance(kPitch, kPitch))).End();
-  }
-  return rows;
-}
-
 std::string FilteredCsv(const FilteredSeries& filtered, const SpinCenter* center) {
   std::string rows = std::string(PosesHeader()) + "," + std::string(kVelocityColumns) + "," +
                      std::string(kAccelerationColumns) + "\n";
@@ -144,7 +146,8 @@ std::string FilteredCsv(const FilteredSeries& filtered, const SpinCenter* center
     MotionSample sample{one.status, one.velocity, std::nullopt};
     AppendPoseCells(one.pose, row);
     if (center != nullptr) {
-      sample.velocity = VelocityOfPoint(one.velocity, one.pose.world_from_body, center->in_body_mm);
+      sample.velocity = VelocityOfPoint(one.velocity, one.pose.world_from_body, center->in_body_mm,
+                                        one.pose.covariance.topLeftCorner<3, 3>());
       sample.center = CenterOf(one, *center);
     }
     AppendVelocityCells(sample, row);
@@ -165,30 +168,6 @@ std::string PosesCsv(const PoseSeries& series) {
       AppendPoseCells(pose, row);
     } else {
       row.Empty(kCellsOfAPose);
-    }
-    row.End();
-  }
-  return rows;
-}
-
-std::string AnglesCsv(const PoseSeries& series, const std::vector<PoseAngles>& angles,
-                      const std::array<std::string, 3>& names) {
-  std::string rows = "frame,timestamp_ns,status";
-  for (const char* prefix : {"", "u_"}) {
-    for (const std::string& name : names) rows += "," + (prefix + name) + "_rad";
-  }
-  rows += "\n";
-  for (std::size_t i = 0; i < angles.size(); ++i) {
-    const PoseAngles& one = angles[i];
-    CsvRow row(rows);
-    row.Integer(series[i].frame).Integer(series[i].timestamp_ns);
-    row.Text(!one.measured ? "gap" : one.locked ? "locked" : "ok");
-    for (const bool uncertainty : {false, true}) {
-      for (int k = 0; k < 3; ++k) {
-        const double u_rad = std::sqrt(one.covariance_rad2(k, k));
-        const bool told = one.measured && (!one.locked || k == 1);  // locked: the middle one alone
-        row.Number(!told ? std::nan("") : uncertainty ? u_rad : one.angles_rad[k]);
-      }
     }
     row.End();
   }

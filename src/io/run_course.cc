@@ -64,7 +64,7 @@ std::string TranslationPlot(const RunTrace& trace) {
     }
   }
   plot.title = "Way of the middle of the balls";
-  plot.y_name = "way [mm]";
+  plot.y_name = "displacement [mm]";
   plot.caption = fmt::format(
       "Way of the balls' middle from where it was first, ({:.3f}, {:.3f}, {:.3f}) mm: {}. Band: ± "
       "2 σ "
@@ -89,7 +89,7 @@ std::string RotationPlot(const RunTrace& trace) {
     }
   }
   plot.title = "Turn from the first pose";
-  plot.y_name = "turn [°]";
+  plot.y_name = "rotation [°]";
   plot.caption = fmt::format(
       "Rotation vector from the first pose: {}. Its length is the angle, its direction the axis. "
       "Band: ± 2 σ from image noise.",

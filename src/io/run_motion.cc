@@ -71,7 +71,8 @@ void AddAxis(const MeanAxis& mean, HtmlTable& table) {
 
 std::string Outcome(const MotionAnalysis& motion) {
   HtmlTable table("ll", {"", ""});
-  table.AddRow({"way of the rotation", Digits(kDegreesPerRadian * motion.total_rad, 4) + "°"});
+  table.AddRow(
+      {"rotation, back and forth added up", Digits(kDegreesPerRadian * motion.total_rad, 4) + "°"});
   table.AddRow({"mean rate", Digits(kDegreesPerRadian * motion.mean_rate_rad_s, 4) + " °/s"});
   table.AddRow({"law of the centre's path",
                 std::string(LawWord(motion.spin.law)) + (motion.spin.law_given ? " (given)" : "")});
@@ -120,6 +121,15 @@ std::string VelocityPlot(const MotionAnalysis& motion, Eigen::Index row, const c
   return DrawLinePlot(plot);
 }
 
+bool RestsByLaw(const MotionAnalysis& motion) {
+  return motion.spin.center && motion.spin.law == PathLaw::kFixed;
+}
+
+std::string Capitalized(std::string text) {
+  if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] += 'A' - 'a';
+  return text;
+}
+
 }  // namespace
 
 std::string RunMotionSection(const RunReport& report, std::size_t body) {
@@ -127,7 +137,7 @@ std::string RunMotionSection(const RunReport& report, std::size_t body) {
   const MotionAnalysis& motion = *report.bodies[body].motion;
   std::string text = "<section>" + BodyHeading(report, body, "Motion");
   if (!motion.spin.verdict.empty()) {
-    text += "<p><b>" + EscapeHtml(motion.spin.verdict) + "</b></p>\n";
+    text += "<p><b>" + EscapeHtml(Capitalized(motion.spin.verdict)) + "</b></p>\n";
   }
   for (const auto& warning : motion.warnings) text += "<p>" + EscapeHtml(warning) + "</p>\n";
   constexpr const char* kBand =
@@ -140,8 +150,17 @@ std::string RunMotionSection(const RunReport& report, std::size_t body) {
   return text + Outcome(motion) + Evidence(motion.spin) + "<div class=\"figures\">\n" +
          VelocityPlot(motion, 0, "Angular velocity", "ω [rad/s]",
                       std::string("Angular velocity") + kBand) +
-         VelocityPlot(motion, 3, "Velocity", "v [mm/s]", std::string(of) + kBand) +
+         (RestsByLaw(motion)
+              ? "<p>The spin centre rests: its velocity is zero by its law.</p>\n"
+              : VelocityPlot(motion, 3, "Velocity", "v [mm/s]", std::string(of) + kBand)) +
          "</div></section>\n";
+}
+
+std::string RunJointsSection(const RunReport& report) {
+  if (report.joints.empty()) return "";
+  std::string text = "<section><h2>Joints</h2>\n";
+  for (const std::string& joint : report.joints) text += "<p>" + EscapeHtml(joint) + "</p>\n";
+  return text + "</section>\n";
 }
 
 }  // namespace stereomotion

@@ -34,12 +34,28 @@ std::string Text(const Json& parent, const std::string& key, const std::string& 
   return found->get<std::string>();
 }
 
+// Runs of older versions have one body and do not list it.
+std::vector<std::string> BodyFolders(const Json& json, const std::string& place) {
+  std::vector<std::string> folders;
+  for (const Json& body : json.value("bodies", Json::array())) {
+    const std::string folder = Text(body, "folder", place);
+    if (folder != ".") folders.push_back(folder);
+  }
+  return folders;
+}
+
 }  // namespace
 
 const RunInput* RunOrigin::Input(const std::string& role) const {
   const auto found = std::find_if(inputs.begin(), inputs.end(),
                                   [&](const RunInput& input) { return input.role == role; });
   return found == inputs.end() ? nullptr : &*found;
+}
+
+fs::path RootOfRun(const fs::path& folder) {
+  std::error_code ignored;
+  if (fs::exists(folder / "run.json", ignored)) return folder;
+  return fs::exists(folder / ".." / "run.json", ignored) ? folder / ".." : folder;
 }
 
 RunOrigin ReadRunOrigin(const fs::path& run) {
@@ -62,6 +78,7 @@ RunOrigin ReadRunOrigin(const fs::path& run) {
     origin.inputs.push_back({Text(input, "role", place), Text(input, "path", place),
                              hashed ? input["sha256"].get<std::string>() : std::string()});
   }
+  origin.body_folders = BodyFolders(json, file.string() + ": bodies");
   return origin;
 }
 

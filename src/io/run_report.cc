@@ -32,6 +32,7 @@ std::string RunHtml(const RunReport& report) {
     html += RunMotionSection(report, body) + RunCourseSection(report, body) +
             RunPathSection(report, body);
   }
+  html += RunJointsSection(report);
   return html + RunCamerasSection(report) + RunInputsSection(report) + PageEnd();
 }
 

@@ -32,6 +32,7 @@ std::string RunVerdictSection(const RunReport& report);
 std::string RunWarningsSection(const RunReport& report);
 std::string RunNumbersSection(const RunReport& report);
 std::string RunMotionSection(const RunReport& report, std::size_t body);
+std::string RunJointsSection(const RunReport& report);
 std::string RunCourseSection(const RunReport& report, std::size_t body);
 std::string RunPathSection(const RunReport& report, std::size_t body);
 std::string RunCamerasSection(const RunReport& report);

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "fit_recording.h"
 #include "motion_warnings.h"
-#include "thin_recording.h"
 
 namespace stereomotion {
 namespace {
@@ -22,56 +22,6 @@ Eigen::Vector3d Centroid(const std::vector<Eigen::Vector3d>& points_mm) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& point : points_mm) sum += point;
   return points_mm.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points_mm.size()));
-}
-
-// What the offset's own uncertainty does to the centre, to first order: the fit of data moved by
-// one standard uncertainty more. A common part, also where the offset is not significant and left
-// out.
-void AddOffsetUncertainty(const MotionData& data, const TimeOffset& offset,
-                          const SpinCenterOptions& options, SpinCenterResult& spin) {
-  if (!spin.center || !options.with_calibration) return;
-  const double used_s = offset.significant ? offset.offset_s : 0;
-  SpinCenterOptions same = options;
-  same.law = spin.law;
-  same.with_calibration = false;
-  const SpinCenterResult moved = FindSpinCenter(WithTimeOffset(data, used_s + offset.u_s), same);
-  SpinCenter& center = *spin.center;
-  if (!moved.center || moved.center->states.size() != center.states.size()) return;
-  const Eigen::Vector3d shift_mm = moved.center->in_body_mm - center.in_body_mm;
-  center.calibration_covariance_mm2 =
-      center.calibration_covariance_mm2.value_or(Eigen::Matrix3d::Zero()) +
-      shift_mm * shift_mm.transpose();
-  for (std::size_t i = 0; i < center.states.size(); ++i) {
-    CenterState& state = center.states[i];
-    const Eigen::Vector3d way_mm = moved.center->states[i].position_mm - state.position_mm;
-    const Eigen::Vector3d u_mm = state.calibration_u_mm.value_or(Eigen::Vector3d::Zero());
-    state.calibration_u_mm = (u_mm.array().square() + way_mm.array().square()).sqrt().matrix();
-  }
-}
-
-// The joint fit of all observations, on every n-th frame of a recording too long for it. Returns
-// which frames know their centre.
-std::vector<bool> FitCenter(const MotionData& data, const AnalyseOptions& options,
-                            std::size_t stride, MotionAnalysis& analysis) {
-  const bool thinned = stride > 1;
-  std::vector<std::size_t> kept;
-  MotionData joint;
-  if (thinned) joint = ThinnedRecording(data, stride, kept);
-  const MotionData* source = thinned ? &joint : &data;
-  std::optional<TimeOffset>& offset = analysis.time_offset;
-  if (options.estimate_time_offset) {
-    offset = EstimateTimeOffset(thinned ? FirstPart(data, kOffsetFrames) : data);
-  }
-  if (offset && offset->significant) {
-    joint = WithTimeOffset(*source, offset->offset_s);
-    source = &joint;
-    if (!thinned) analysis.series = PosesOf(joint);
-  }
-  analysis.spin = FindSpinCenter(*source, options.center);
-  // From the data as recorded: `source` may be moved already.
-  if (offset && !thinned) AddOffsetUncertainty(data, *offset, options.center, analysis.spin);
-  if (thinned) return SpreadOverSeries(analysis.series, kept, analysis.spin);
-  return std::vector<bool>(analysis.series.size(), true);
 }
 
 // v and a of the centre by its law; its covariance with the local fit's ω and α is not known.
@@ -146,9 +96,13 @@ MotionAnalysis AnalyseMotion(const MotionData& data, const AnalyseOptions& optio
     return analysis;
   }
   const std::size_t stride = JointFitStride(measured, options.max_joint_frames);
-  const std::vector<bool> has_center = FitCenter(data, options, stride, analysis);
+  const std::vector<bool> has_center = FitRecording(data, options, stride, analysis);
   const Eigen::Vector3d near_in_body_mm = Centroid(data.balls_in_body_mm);
-  if (auto axis = FindMeanAxis(analysis.series, near_in_body_mm)) analysis.axis = *axis;
+  if (auto axis = FindMeanAxis(analysis.series, near_in_body_mm)) {
+    if (options.center.with_calibration)
+      AddCommonPart(data, analysis.series, near_in_body_mm, *axis);
+    analysis.axis = *axis;
+  }
   analysis.screws = ScrewAxes(analysis.series, near_in_body_mm);
   MakeSamples(EstimateVelocities(analysis.series, options.velocity), has_center, analysis);
   MeasureRotation(analysis);

@@ -1,8 +1,10 @@
 #include "motion/center_problem.h"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
+#include <stdexcept>
 
 #include "motion/solve_center.h"
 
@@ -13,6 +15,21 @@ Eigen::Vector3d Centroid(const std::vector<Eigen::Vector3d>& balls_mm) {
   Eigen::Vector3d sum_mm = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& ball_mm : balls_mm) sum_mm += ball_mm;
   return balls_mm.empty() ? sum_mm : Eigen::Vector3d(sum_mm / static_cast<double>(balls_mm.size()));
+}
+
+/// Throws where an unknown structure is a line of balls: poses then do not tell its roll, and a
+/// structure that bends could not be told from one that does not.
+void CheckStructure(const MotionData& data) {
+  constexpr double kLeastWidth = 1e-3;  // of the length: as good as a line
+  const Eigen::Vector3d mean_mm = Centroid(data.balls_in_body_mm);
+  Eigen::Matrix3d scatter_mm2 = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& ball_mm : data.balls_in_body_mm) {
+    scatter_mm2 += (ball_mm - mean_mm) * (ball_mm - mean_mm).transpose();
+  }
+  const Eigen::Vector3d squares_mm2 =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter_mm2).eigenvalues();
+  if (squares_mm2[1] > kLeastWidth * kLeastWidth * squares_mm2[2]) return;
+  throw std::invalid_argument("unknown structure: needs three balls that are not on one line");
 }
 
 /// Refines the balls and all poses together without any law.
@@ -128,7 +145,8 @@ CenterProblem PrepareCenter(const MotionData& data) {
                   [](const ObservedFrame& frame) { return !frame.points.empty(); });
   problem.origin_in_body_mm = Centroid(data.balls_in_body_mm);
   CondenseAll(problem);
-  if (!data.structure_known && problem.has_points && data.balls_in_body_mm.size() > 2) {
+  if (!data.structure_known && problem.has_points) {
+    CheckStructure(data);
     problem.gauge = StructureGauge(data.balls_in_body_mm);
     FitStructure(problem);
     CondenseAll(problem);

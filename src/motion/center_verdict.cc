@@ -56,6 +56,15 @@ std::string Known(const CenterProblem& problem, const SpinCenter& center) {
          (center.free_axis_in_body ? " and not at all along it" : "");
 }
 
+/// What the choice of the law leaves out.
+std::string LawUnknown(const CenterProblem& problem, const SpinCenterResult& result) {
+  if (result.law_given || !problem.turns || !result.center) return "";
+  if (!result.covariance_law_unknown_mm2) return "; if the law is not known for sure: not at all";
+  SpinCenter center = *result.center;
+  center.covariance_mm2 = *result.covariance_law_unknown_mm2;
+  return "; if the law is not known for sure: " + Spread(problem, center);
+}
+
 std::string OtherLaws(const CenterProblem& problem, const SpinCenterResult& result) {
   std::string text;
   for (const LawFit& fit : result.laws) {
@@ -71,9 +80,15 @@ std::string OtherLaws(const CenterProblem& problem, const SpinCenterResult& resu
 std::string Basis(const SpinCenterResult& result) {
   const std::string law(LawWord(result.law));
   if (result.law == PathLaw::kFree) return "path free, on the stated noise of its acceleration";
-  if (result.law_given) return "law " + law + " as given";
-  if (result.evidence_open) return "law " + law + " taken, though a narrower one fits as well";
-  return "law " + law;
+  if (result.law_given) {
+    return "law " + law + " as given" +
+           (result.bends_otherwise ? ", though a cubic path fits much better than any law" : "");
+  }
+  std::string text = "law " + law;
+  if (result.evidence_open) text += " taken, though a narrower one fits as well";
+  // No wider law could contradict it.
+  if (result.law == PathLaw::kAccelerated) text += ", the widest of all: the centre hangs on it";
+  return text;
 }
 
 std::string Outcome(const CenterProblem& problem, const SpinCenterResult& result) {
@@ -81,10 +96,14 @@ std::string Outcome(const CenterProblem& problem, const SpinCenterResult& result
   if (!problem.turns) {
     return "no rotation beyond the noise: all points of the body move alike, no spin centre";
   }
-  if (result.center) return Known(problem, *result.center) + "; " + Basis(result);
+  if (result.center) {
+    return Known(problem, *result.center) + "; " + Basis(result) + LawUnknown(problem, result);
+  }
   if (result.law == PathLaw::kFree) {
     if (result.law_given) return "a free path tells no spin centre";
-    return std::string("no law of the path fits, so no spin centre is told") +
+    return std::string(result.bends_otherwise
+                           ? "a cubic path fits much better than any law, so no spin centre is told"
+                           : "no law of the path fits, so no spin centre is told") +
            (problem.one_rod ? " (one rod tells only a centre on its own line)" : "");
   }
   return "spin centre not determined; " + Basis(result);

@@ -15,6 +15,7 @@ namespace {
 /// A centre less certain than this [mm] is called undetermined: it is farther away than any body
 /// that two cameras measure.
 constexpr double kUndetermined_mm = 1e5;
+constexpr int kCubicTerms = 4;
 
 struct Solution {
   CenterModel model;
@@ -120,6 +121,20 @@ double Bic(double chi2, Eigen::Index parameters, int rows) {
   return chi2 + static_cast<double>(parameters) * std::log(std::max(rows, 1));
 }
 
+/// Fills χ², degrees of freedom and BIC; no solution where the path itself is open.
+std::optional<Solution> FitPath(const CenterProblem& problem, int path_terms, LawFit& fit) {
+  const CenterModel shape = ModelOf(problem, path_terms, !problem.has_points);
+  const auto frames = static_cast<Eigen::Index>(problem.frames.size());
+  const Eigen::Index parameters = shape.GlobalSize() + shape.LocalSize() * frames;
+  fit.dof = frames < path_terms ? -1 : static_cast<int>(problem.rows - parameters);
+  if (fit.dof < 0) return std::nullopt;
+  Solution solution = Solve(problem, path_terms);
+  fit.chi2 = solution.chi2;
+  fit.bic = Bic(fit.chi2, parameters, problem.rows);
+  if (fit.chi2 < 0) return std::nullopt;
+  return solution;
+}
+
 }  // namespace
 
 int PathTerms(PathLaw law) {
@@ -139,16 +154,15 @@ int PathTerms(PathLaw law) {
 LawFit FitLaw(const CenterProblem& problem, PathLaw law, bool with_calibration) {
   LawFit fit;
   fit.law = law;
-  const CenterModel shape = ModelOf(problem, PathTerms(law), !problem.has_points);
-  const auto frames = static_cast<Eigen::Index>(problem.frames.size());
-  const Eigen::Index parameters = shape.GlobalSize() + shape.LocalSize() * frames;
-  fit.dof = static_cast<int>(problem.rows - parameters);
-  if (frames < PathTerms(law)) fit.dof = -1;  // the path itself is open
-  if (fit.dof < 0) return fit;
-  const Solution solution = Solve(problem, PathTerms(law));
-  fit.chi2 = solution.chi2;
-  fit.bic = Bic(fit.chi2, parameters, problem.rows);
-  if (fit.chi2 >= 0) fit.center = CenterOf(problem, solution, law, with_calibration);
+  const auto solution = FitPath(problem, PathTerms(law), fit);
+  if (solution) fit.center = CenterOf(problem, *solution, law, with_calibration);
+  return fit;
+}
+
+LawFit FitCubic(const CenterProblem& problem) {
+  LawFit fit;
+  fit.law = PathLaw::kFree;
+  FitPath(problem, kCubicTerms, fit);
   return fit;
 }
 

@@ -14,6 +14,9 @@ int PathTerms(PathLaw law);
 /// determines it. `adequate` is left open.
 LawFit FitLaw(const CenterProblem& problem, PathLaw law, bool with_calibration);
 
+/// Fits a path of order 3, as evidence against all laws: no centre.
+LawFit FitCubic(const CenterProblem& problem);
+
 /// Tells what the frames say without any law.
 LawFit FitFree(const CenterProblem& problem);
 

@@ -24,4 +24,13 @@ void MarkAdequate(std::vector<LawFit>& fits);
 /// frames' own poses show more noise than stated.
 LawChoice ChooseLaw(const std::vector<LawFit>& fits);
 
+/// Tells whether BIC strongly prefers a cubic path to every law. Free poses are too wide an
+/// alternative to show it: they refute a law by thousands of parameters at once.
+bool BendsOtherwise(const std::vector<LawFit>& fits, const LawFit& cubic);
+
+/// Gives each adequate law its share, exp(−AIC/2), χ² scaled as above. Not BIC's: its penalty grows
+/// with the recording, so a motion of the centre of one to three σ, which the data hardly tells but
+/// which moves the narrow law's centre by many of its σ, would get no share.
+void WeighLaws(std::vector<LawFit>& fits);
+
 }  // namespace stereomotion

@@ -11,6 +11,29 @@ namespace {
 constexpr double kFarthest_rad = 2.7;
 constexpr int kMoments = 2 * kHighestDegree + kBiasOrders + 1;
 
+/// Residual of one observation.
+Vector6d ResidualOf(const LocalPolynomial& fit, const WindowMoments::Observation& seen) {
+  Vector6d residual = seen.y;
+  double power = 1;
+  for (int k = 0; k <= fit.degree; ++k, power *= seen.s) {
+    residual -= power * fit.coefficients.segment<6>(6 * k);
+  }
+  return residual;
+}
+
+/// Solves once more, for the residuals: normal equations of high degree lose ten digits.
+void Refine(const WindowMoments& window, LocalPolynomial& fit) {
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(fit.coefficients.size());
+  for (const WindowMoments::Observation& seen : window.observations) {
+    const Vector6d weighted = seen.information * ResidualOf(fit, seen);
+    double power = 1;
+    for (int k = 0; k <= fit.degree; ++k, power *= seen.s) {
+      right.segment<6>(6 * k) += power * weighted;
+    }
+  }
+  fit.coefficients += fit.covariance * right;
+}
+
 }  // namespace
 
 WindowMoments::WindowMoments(const PoseStretch& of, double about_s, const Rigid3& from)
@@ -33,7 +56,7 @@ bool WindowMoments::Add(std::size_t i) {
     moments[p] += power * information;
     if (p <= kHighestDegree) observed[p] += power * weighted;
   }
-  squares += y.dot(weighted);
+  observations.push_back({s, y, information});
   ++poses;
   return true;
 }
@@ -57,11 +80,20 @@ LocalPolynomial FitLocalPolynomial(const WindowMoments& window, int degree) {
   fit.degree = degree;
   fit.covariance = scale.asDiagonal() * llt.solve(Eigen::MatrixXd(scale.asDiagonal()));
   fit.coefficients = fit.covariance * right;
-  fit.chi2 = window.squares - fit.coefficients.dot(right);
+  if (degree > 2) Refine(window, fit);
   fit.dof = 6 * window.poses - n;
   const Eigen::MatrixXd gains = fit.covariance * beyond;
   for (int k = 0; k < kBiasOrders; ++k) fit.bias_gains.emplace_back(gains.middleCols<6>(6 * k));
   return fit;
+}
+
+double Chi2Of(const LocalPolynomial& fit, const WindowMoments& window) {
+  double chi2 = 0;
+  for (const WindowMoments::Observation& seen : window.observations) {
+    const Vector6d residual = ResidualOf(fit, seen);
+    chi2 += residual.dot(seen.information * residual);
+  }
+  return chi2;
 }
 
 }  // namespace stereomotion

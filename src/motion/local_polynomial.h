@@ -40,7 +40,15 @@ class WindowMoments {
   int poses = 0;
   std::vector<Matrix6d> moments;
   std::vector<Vector6d> observed;
-  double squares = 0;  ///< Σ yᵀ Λ y
+
+  /// What was added, pose by pose: χ² must be summed over residuals, for Σ yᵀ Λ y is 1e10 where
+  /// the noise is 1e-5 of the motion, and rounding would be all that differences leave of it.
+  struct Observation {
+    double s;
+    Vector6d y;
+    Matrix6d information;
+  };
+  std::vector<Observation> observations;
 };
 
 /// Holds a polynomial (of the unit of time) about the window's time.
@@ -48,7 +56,6 @@ struct LocalPolynomial {
   int degree = 0;
   Eigen::VectorXd coefficients;  ///< order 0 (6), order 1 (6), …
   Eigen::MatrixXd covariance;
-  double chi2 = 0;
   int dof = 0;
   /// Error of the coefficients by the path's Taylor coefficients of order degree + 1, + 2, ….
   std::vector<Eigen::MatrixXd> bias_gains;
@@ -56,5 +63,8 @@ struct LocalPolynomial {
 
 /// Fits a polynomial by weighted least squares. The window must hold more poses than `degree`.
 LocalPolynomial FitLocalPolynomial(const WindowMoments& window, int degree);
+
+/// Computes χ² of a fit to its window.
+double Chi2Of(const LocalPolynomial& fit, const WindowMoments& window);
 
 }  // namespace stereomotion

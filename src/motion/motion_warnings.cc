@@ -66,6 +66,11 @@ void NoteLaw(const SpinCenterResult& spin, Notes& notes) {
                     "uncertainty is given; name the law (--law) if you know it",
                     word));
   }
+  if (!spin.law_given && spin.law == PathLaw::kAccelerated) {
+    notes.push_back(
+        "the spin centre hangs on the law 'accelerated', the widest there is: no wider one can "
+        "contradict it, and on a path that only looks like it the centre is elsewhere");
+  }
   if (!spin.law_given && spin.law == PathLaw::kFree) {
     notes.push_back(
         "no point of the body rests, or moves uniformly or with constant acceleration: "
@@ -126,16 +131,18 @@ void NoteWideCenter(const MotionData& data, const SpinCenterResult& spin, Notes&
                   kDegPerRad * spin.range_of_rotation_rad, u_mm));
 }
 
-void NoteOffset(const MotionAnalysis& analysis, bool thinned, Notes& notes) {
+void NoteOffset(const MotionAnalysis& analysis, Notes& notes) {
   if (!analysis.time_offset) return;
   const TimeOffset& offset = *analysis.time_offset;
   constexpr double kMsPerS = 1000;
   if (offset.significant) {
     notes.push_back(fmt::format(
         "the right camera's images are {:.3g} ± {:.2g} ms later than their time says; "
-        "the motion is given for the left camera's time{}",
+        "{}",
         kMsPerS * offset.offset_s, kMsPerS * offset.u_s,
-        thinned ? " (velocities and axes of so long a recording are not corrected)" : ""));
+        analysis.time_offset_applied
+            ? "the motion is given for the left camera's time"
+            : "so long a recording is not corrected for it: track it in parts (--start, --count)"));
   }
   if (!offset.warning.empty()) notes.push_back(offset.warning);
 }
@@ -153,7 +160,7 @@ std::vector<std::string> MotionWarnings(const MotionData& data, const MotionAnal
   }
   NoteGaps(analysis.series, notes);
   NoteFreeRoll(analysis.series, notes);
-  NoteOffset(analysis, stride > 1, notes);
+  NoteOffset(analysis, notes);
   NoteNoise(analysis.spin, notes);
   NoteLaw(analysis.spin, notes);
   NoteAxis(analysis, notes);

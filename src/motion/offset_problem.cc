@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "motion/filter_segments.h"
 #include "motion/path_stencil.h"
-#include "stereomotion/geometry/so3.h"
 
 namespace stereomotion {
 namespace {
@@ -23,51 +23,10 @@ bool DeterminePose(const MotionFrame& frame) {
   return frame.image_points.size() >= kFewestPoints && balls.size() >= kFewestBalls;
 }
 
-/// Adds a frame's Jacobian (rows by the poses of its stencil) to the band.
-void AddToBand(const Eigen::MatrixXd& jacobian, const Eigen::VectorXd& by_offset,
-               const Eigen::VectorXd& residuals, int first, OffsetNormals& normals) {
-  const Eigen::MatrixXd square = jacobian.transpose() * jacobian;
-  const int count = static_cast<int>(jacobian.cols()) / 6;
-  for (int a = 0; a < count; ++a) {
-    for (int b = a; b < count; ++b) {
-      normals.hessian[first + a].block<6, 6>(0, 6 * (b - a)) += square.block<6, 6>(6 * a, 6 * b);
-    }
-  }
-  normals.gradient.segment(6 * first, 6 * count) += jacobian.transpose() * residuals;
-  normals.cross.segment(6 * first, 6 * count) += jacobian.transpose() * by_offset;
-  normals.offset_information += by_offset.squaredNorm();
-  normals.offset_gradient += by_offset.dot(residuals);
-  normals.chi2 += residuals.squaredNorm();
-}
-
-/// Holds one frame's whitened rows.
-struct FrameRows {
-  Eigen::MatrixXd jacobian;
-  Eigen::VectorXd by_offset, residuals;
-};
-
-/// Linearises one point that is seen from a path's point; `later` is that of the right camera.
-void LinearizePoint(const PointResidual& seen, const Eigen::Vector3d& rotated_mm,
-                    const PathPoint& path, bool later, int self, int row, FrameRows& rows) {
-  const Eigen::Matrix3d by_rotation = -seen.d_point * Hat(rotated_mm);
-  rows.residuals.segment<3>(row) = seen.whitened;
-  if (!later) {
-    rows.jacobian.block<3, 3>(row, 6 * self) = by_rotation;
-    rows.jacobian.block<3, 3>(row, 6 * self + 3) = seen.d_point;
-    return;
-  }
-  for (std::size_t s = 0; s < path.weights.size(); ++s) {
-    const int column = 6 * static_cast<int>(s);
-    rows.jacobian.block<3, 3>(row, column) = by_rotation * path.by_rotation[s];
-    rows.jacobian.block<3, 3>(row, column + 3) = path.weights[s] * seen.d_point;
-  }
-  rows.by_offset.segment<3>(row) =
-      seen.d_point * (path.omega_rad_s.cross(rotated_mm) + path.velocity_mm_s);
-}
-
 }  // namespace
 
-OffsetProblem::OffsetProblem(const MotionData& data) : data_(data) {
+OffsetProblem::OffsetProblem(const MotionData& data, CommonErrors errors)
+    : data_(data), errors_(std::move(errors)) {
   const PoseSeries series = PosesOf(data);
   CheckSeries(series);
   period_s_ = MedianPeriodS(series);
@@ -120,42 +79,14 @@ void OffsetProblem::MakeStencils() {
   }
 }
 
-std::vector<Rigid3> OffsetProblem::StartPoses() const {
-  std::vector<Rigid3> poses;
-  for (const std::size_t i : frames_) poses.push_back(data_.frames[i].pose.world_from_body);
-  return poses;
+OffsetUnknowns OffsetProblem::Start(double offset_s) const {
+  OffsetUnknowns start{{}, offset_s, Eigen::VectorXd::Zero(errors_.root.cols())};
+  for (const std::size_t i : frames_) start.poses.push_back(data_.frames[i].pose.world_from_body);
+  return start;
 }
 
 Rigid3 OffsetProblem::PoseAt(const std::vector<Rigid3>& poses, int k, double offset_s) const {
   return EvaluatePath(stencils_[k], poses, offset_s).world_from_body;
-}
-
-std::optional<OffsetNormals> OffsetProblem::Linearize(const std::vector<Rigid3>& poses,
-                                                      double offset_s) const {
-  const int size = static_cast<int>(frames_.size());
-  OffsetNormals normals;
-  normals.hessian.assign(frames_.size(), OffsetNormals::BlockRow::Zero());
-  normals.gradient = normals.cross = Eigen::VectorXd::Zero(6 * size);
-  for (int k = 0; k < size; ++k) {
-    const PathStencil& stencil = stencils_[k];
-    const PathPoint path = EvaluatePath(stencil, poses, offset_s);
-    const auto& image_points = data_.frames[frames_[k]].image_points;
-    const int rows = 3 * static_cast<int>(image_points.size());
-    FrameRows frame{Eigen::MatrixXd::Zero(rows, 6 * static_cast<int>(stencil.times_s.size())),
-                    Eigen::VectorXd::Zero(rows), Eigen::VectorXd::Zero(rows)};
-    for (std::size_t i = 0; i < image_points.size(); ++i) {
-      const bool later = image_points[i].camera == 1;
-      const Rigid3& pose = later ? path.world_from_body : poses[k];
-      const Eigen::Vector3d rotated_mm =
-          pose.rotation * data_.balls_in_body_mm[image_points[i].ball];
-      const auto seen = Compare(points_[k][i], rotated_mm + pose.translation_mm);
-      if (!seen) return std::nullopt;
-      LinearizePoint(*seen, rotated_mm, path, later, stencil.self, 3 * static_cast<int>(i), frame);
-      normals.rows += 2;
-    }
-    AddToBand(frame.jacobian, frame.by_offset, frame.residuals, stencil.first, normals);
-  }
-  return normals;
 }
 
 }  // namespace stereomotion

@@ -77,7 +77,7 @@ void PathRoughness::AddPilots(const PoseStretch& stretch, int degree, int widest
       const WindowMoments window = Window(stretch, at, half);
       if (window.poses < 2) continue;
       const LocalPolynomial fit = FitLocalPolynomial(window, std::min(degree, window.poses - 1));
-      Anchor anchor{at, {}, fit.chi2, fit.dof};
+      Anchor anchor{at, {}, Chi2Of(fit, window), fit.dof};
       for (int k = 0; k <= fit.degree; ++k) {
         const Vector6d c = fit.coefficients.segment<6>(6 * k);
         anchor.moments.emplace_back(c * c.transpose());

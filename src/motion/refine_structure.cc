@@ -1,6 +1,5 @@
 #include "stereomotion/motion/refine_structure.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
@@ -22,14 +21,6 @@ Eigen::Matrix3Xd AsColumns(const std::vector<Eigen::Vector3d>& points_mm) {
     columns.col(static_cast<Eigen::Index>(i)) = points_mm[i];
   }
   return columns;
-}
-
-/// Says whether the balls (mean zero) lie on one line: then the roll about it is open.
-bool LieOnLine(const std::vector<Eigen::Vector3d>& balls_mm) {
-  constexpr double kThinnest = 1e-3;  // of the length: as in EstimatePose
-  const Eigen::Vector3d spread =
-      Eigen::JacobiSVD<Eigen::Matrix3Xd>(AsColumns(balls_mm)).singularValues();
-  return spread[1] < kThinnest * spread[0];
 }
 
 double ResidualSigma(const StructureProblem& problem, const StructureFrame& frame,
@@ -82,7 +73,9 @@ bool AreDetermined(const StructureProblem& problem) {
 /// Moves balls and poses into the gauge of `gauge_mm`.
 void FixGauge(const std::vector<Eigen::Vector3d>& gauge_mm, StructureProblem& problem) {
   const Rigid3 fixed_from_free =
-      AlignPoints(AsColumns(problem.balls_in_body_mm), AsColumns(gauge_mm));
+      problem.rod_in_body
+          ? Rigid3{Eigen::Quaterniond::Identity(), -MeanOf(problem.balls_in_body_mm)}
+          : AlignPoints(AsColumns(problem.balls_in_body_mm), AsColumns(gauge_mm));
   const Rigid3 free_from_fixed = fixed_from_free.Inverse();
   for (Eigen::Vector3d& ball : problem.balls_in_body_mm) ball = fixed_from_free * ball;
   for (StructureFrame& frame : problem.frames) {
@@ -106,7 +99,10 @@ std::optional<StructureFailure> Solve(StructureProblem& problem, const Structure
 }
 
 int CountDof(const StructureProblem& problem) {
-  int dof = 6 - static_cast<int>(3 * problem.balls_in_body_mm.size() + 6 * problem.frames.size());
+  const auto balls = static_cast<int>(problem.balls_in_body_mm.size());
+  const auto frames = static_cast<int>(problem.frames.size());
+  // A straight rod: places along it, and no roll.
+  int dof = problem.rod_in_body ? 1 - balls - 5 * frames : 6 - 3 * balls - 6 * frames;
   for (const StructureFrame& frame : problem.frames) {
     for (const PointObservation& observation : frame.observations) dof += observation.rows;
   }
@@ -133,9 +129,7 @@ Expected<Structure, StructureFailure> RefineStructure(const MotionData& data,
   StructureProblem problem = MakeStructureProblem(data);
   const std::vector<Eigen::Vector3d> gauge_mm = problem.balls_in_body_mm;
   constexpr std::size_t kFewestBalls = 3;
-  if (gauge_mm.size() < kFewestBalls || LieOnLine(gauge_mm)) {
-    return Unexpected{StructureFailure::kTooFewBalls};
-  }
+  if (gauge_mm.size() < kFewestBalls) return Unexpected{StructureFailure::kTooFewBalls};
   DropOpenFrames(problem);
   if (!AreDetermined(problem)) return Unexpected{StructureFailure::kTooFewBalls};
   Structure structure;

@@ -2,6 +2,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "motion/offset_problem.h"
 
@@ -28,25 +29,31 @@ Sparse SparseHessian(const OffsetNormals& normals) {
   return matrix;
 }
 
-/// Moves poses and offset by one Gauss–Newton step; returns how much χ² should fall by it, or
-/// nothing where the equations are singular.
-std::optional<double> Step(const OffsetNormals& normals, bool fixed, OffsetSolution& at) {
-  Eigen::MatrixXd right(normals.gradient.size(), 2);
+/// Moves all unknowns by one Gauss–Newton step; returns how much χ² should fall by it, or nothing
+/// where the equations are singular.
+std::optional<double> Step(const OffsetNormals& normals, bool fixed, OffsetUnknowns& at) {
+  Eigen::MatrixXd right(normals.gradient.size(), 1 + normals.cross.cols());
   right << normals.gradient, normals.cross;
   const auto solved = SolvePoses(normals, right);
   if (!solved) return std::nullopt;
-  double step_s = 0;
-  if (!fixed) {
-    const double information = normals.offset_information - normals.cross.dot(solved->col(1));
-    if (!(information > 0)) return std::nullopt;
-    step_s = -(normals.offset_gradient - normals.cross.dot(solved->col(0))) / information;
+  const Eigen::Index first = fixed ? 1 : 0, count = normals.cross.cols() - first;
+  const Eigen::MatrixXd cross = normals.cross.rightCols(count);
+  const Eigen::MatrixXd by_shared = solved->rightCols(count);
+  Eigen::VectorXd shared = Eigen::VectorXd::Zero(normals.cross.cols());
+  if (count > 0) {
+    const Eigen::LLT<Eigen::MatrixXd> information(
+        normals.information.bottomRightCorner(count, count) - cross.transpose() * by_shared);
+    if (information.info() != Eigen::Success) return std::nullopt;
+    shared.tail(count) = -information.solve(normals.shared_gradient.tail(count) -
+                                            cross.transpose() * solved->col(0));
   }
-  const Eigen::VectorXd step = -solved->col(0) - step_s * solved->col(1);
+  const Eigen::VectorXd step = -solved->col(0) - by_shared * shared.tail(count);
   for (std::size_t k = 0; k < at.poses.size(); ++k) {
     at.poses[k] = Perturb(at.poses[k], step.segment<6>(6 * static_cast<int>(k)));
   }
-  at.offset_s += step_s;
-  return -(step.dot(normals.gradient) + step_s * normals.offset_gradient);
+  at.offset_s += shared[0];
+  at.common += shared.tail(at.common.size());
+  return -(step.dot(normals.gradient) + shared.dot(normals.shared_gradient));
 }
 
 }  // namespace
@@ -77,23 +84,31 @@ Matrix6d PoseCovariance(const OffsetNormals& normals, int k) {
   return (covariance + covariance.transpose()) / 2;
 }
 
+std::optional<Eigen::MatrixXd> SharedInformation(const OffsetNormals& normals) {
+  const auto solved = SolvePoses(normals, normals.cross);
+  if (!solved) return std::nullopt;
+  return normals.information - normals.cross.transpose() * *solved;
+}
+
 std::optional<OffsetSolution> SolveOffset(const OffsetProblem& problem, double offset_s,
                                           bool fixed) {
   constexpr int kMaxIterations = 20;
   constexpr double kSmallFall = 1e-6;  // of χ²: a step of a thousandth of the uncertainty
   constexpr double kReachPeriods = 1.5;
-  OffsetSolution at{offset_s, problem.StartPoses(), {}};
+  OffsetSolution solution{problem.Start(offset_s), {}};
   for (int i = 0; i < kMaxIterations; ++i) {
-    auto normals = problem.Linearize(at.poses, at.offset_s);
+    auto normals = problem.Linearize(solution.at);
     if (!normals) return std::nullopt;
-    at.normals = std::move(*normals);
-    const auto fall = Step(at.normals, fixed, at);
-    if (!fall || std::abs(at.offset_s) > kReachPeriods * problem.period_s()) return std::nullopt;
-    if (*fall > kSmallFall * std::max(1.0, 1e-6 * at.normals.chi2)) continue;
-    auto last = problem.Linearize(at.poses, at.offset_s);
+    solution.normals = std::move(*normals);
+    const auto fall = Step(solution.normals, fixed, solution.at);
+    if (!fall || std::abs(solution.at.offset_s) > kReachPeriods * problem.period_s()) {
+      return std::nullopt;
+    }
+    if (*fall > kSmallFall * std::max(1.0, 1e-6 * solution.normals.chi2)) continue;
+    auto last = problem.Linearize(solution.at);
     if (!last) return std::nullopt;
-    at.normals = std::move(*last);
-    return at;
+    solution.normals = std::move(*last);
+    return solution;
   }
   return std::nullopt;
 }

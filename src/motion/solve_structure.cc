@@ -1,5 +1,7 @@
 #include <ceres/ceres.h>
 
+#include <utility>
+
 #include "motion/structure_problem.h"
 #include "stereomotion/geometry/so3.h"
 
@@ -42,6 +44,55 @@ class PointCost : public ceres::CostFunction {
   Rigid3 start_;
 };
 
+/// Holds parameters in the span of some directions (orthonormal columns) from where they started.
+class SpanManifold : public ceres::Manifold {
+ public:
+  explicit SpanManifold(Eigen::MatrixXd directions) : directions_(std::move(directions)) {}
+  [[nodiscard]] int AmbientSize() const override { return static_cast<int>(directions_.rows()); }
+  [[nodiscard]] int TangentSize() const override { return static_cast<int>(directions_.cols()); }
+
+  bool Plus(const double* x, const double* delta, double* sum) const override {
+    Eigen::Map<Eigen::VectorXd>(sum, directions_.rows()) =
+        Eigen::Map<const Eigen::VectorXd>(x, directions_.rows()) +
+        directions_ * Eigen::Map<const Eigen::VectorXd>(delta, directions_.cols());
+    return true;
+  }
+  bool PlusJacobian(const double* /*x*/, double* jacobian) const override {
+    Eigen::Map<RowMajor>(jacobian, directions_.rows(), directions_.cols()) = directions_;
+    return true;
+  }
+  bool Minus(const double* y, const double* x, double* delta) const override {
+    Eigen::Map<Eigen::VectorXd>(delta, directions_.cols()) =
+        directions_.transpose() * (Eigen::Map<const Eigen::VectorXd>(y, directions_.rows()) -
+                                   Eigen::Map<const Eigen::VectorXd>(x, directions_.rows()));
+    return true;
+  }
+  bool MinusJacobian(const double* /*x*/, double* jacobian) const override {
+    Eigen::Map<RowMajor>(jacobian, directions_.cols(), directions_.rows()) =
+        directions_.transpose();
+    return true;
+  }
+
+ private:
+  /// Ceres counts row by row; so does Eigen here, of any size.
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::MatrixXd directions_;
+};
+
+/// A straight rod's balls move along it, and its frames do not roll.
+void HoldStraight(StructureProblem& problem, std::vector<Vector6d>& steps,
+                  ceres::Problem& ceres_problem) {
+  for (std::size_t i = 0; i < problem.frames.size(); ++i) {
+    if (!ceres_problem.HasParameterBlock(steps[i].data())) continue;
+    ceres_problem.SetManifold(steps[i].data(),
+                              new SpanManifold(PoseDirections(problem, problem.frames[i])));
+  }
+  for (Eigen::Vector3d& ball : problem.balls_in_body_mm) {
+    if (!ceres_problem.HasParameterBlock(ball.data())) continue;
+    ceres_problem.SetManifold(ball.data(), new SpanManifold(*problem.rod_in_body));
+  }
+}
+
 ceres::Solver::Options SolverOptions() {
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_SCHUR;
@@ -76,6 +127,7 @@ bool SolveStructure(StructureProblem& problem, double cauchy_sigma) {
     }
     options.linear_solver_ordering->AddElementToGroup(steps[i].data(), 0);
   }
+  if (problem.rod_in_body) HoldStraight(problem, steps, ceres_problem);
   ceres::Solver::Summary summary;
   ceres::Solve(options, &ceres_problem, &summary);
   for (std::size_t i = 0; i < problem.frames.size(); ++i) {

@@ -11,20 +11,15 @@ constexpr std::size_t kFewest = 3, kMost = 9;  // balls a rod; FORMATS.md
 /// Work bound of the search, far beyond what bodies of rods need.
 constexpr int kMostSteps = 200'000;
 
-struct Line {
-  std::vector<int> balls;  ///< in order along it
-  double bend = 0;         ///< largest distance off it, in units of what is allowed
-};
-
 /// Finds all balls between two that end a rod.
-Line LineBetween(const std::vector<Eigen::Vector3d>& balls_mm, int first, int last,
-                 const RodSortOptions& options) {
+ThreadedLine LineBetween(const std::vector<Eigen::Vector3d>& balls_mm, int first, int last,
+                         const RodSortOptions& options) {
   const Eigen::Vector3d& start_mm = balls_mm[static_cast<std::size_t>(first)];
   const Eigen::Vector3d along_mm = balls_mm[static_cast<std::size_t>(last)] - start_mm;
   const double length_mm = along_mm.norm();
   const double allowed_mm = options.straightness * length_mm + options.slack_mm;
   std::vector<std::pair<double, int>> places = {{0, first}, {length_mm, last}};
-  Line line;
+  ThreadedLine line;
   for (int i = 0; i < static_cast<int>(balls_mm.size()); ++i) {
     if (i == first || i == last) continue;
     const Eigen::Vector3d arm_mm = balls_mm[static_cast<std::size_t>(i)] - start_mm;
@@ -41,12 +36,12 @@ Line LineBetween(const std::vector<Eigen::Vector3d>& balls_mm, int first, int la
 
 /// Adds the lines of more balls than usual again, less one ball between the ends: it may be another
 /// rod's that crosses there.
-void AddWithoutOne(std::size_t usual, std::vector<Line>& lines) {
+void AddWithoutOne(std::size_t usual, std::vector<ThreadedLine>& lines) {
   const std::size_t count = lines.size();
   for (std::size_t i = 0; i < count; ++i) {
     for (std::size_t out = 1; lines[i].balls.size() > usual && out + 1 < lines[i].balls.size();
          ++out) {
-      Line line = lines[i];
+      ThreadedLine line = lines[i];
       line.balls.erase(line.balls.begin() + static_cast<std::ptrdiff_t>(out));
       lines.push_back(std::move(line));
     }
@@ -56,7 +51,7 @@ void AddWithoutOne(std::size_t usual, std::vector<Line>& lines) {
 /// Chooses the lines that together are best.
 class Chooser {
  public:
-  Chooser(std::vector<Line> lines, std::size_t balls, std::size_t usual)
+  Chooser(std::vector<ThreadedLine> lines, std::size_t balls, std::size_t usual)
       : lines_(std::move(lines)), usual_(usual), free_(balls, true), lines_of_(balls) {
     for (std::size_t i = 0; i < lines_.size(); ++i) {
       for (const int ball : lines_[i].balls) lines_of_[static_cast<std::size_t>(ball)].push_back(i);
@@ -91,7 +86,7 @@ class Chooser {
 
   void DescendWith(std::size_t line, std::size_t ball) {
     const Score before = score_;
-    const Line& taken = lines_[line];
+    const ThreadedLine& taken = lines_[line];
     std::get<0>(score_) += taken.balls.size();
     std::get<1>(score_) -= 1;
     std::get<2>(score_) += taken.balls.size() == usual_ ? 1 : 0;
@@ -104,12 +99,12 @@ class Chooser {
     score_ = before;
   }
 
-  [[nodiscard]] bool IsFree(const Line& line) const {
+  [[nodiscard]] bool IsFree(const ThreadedLine& line) const {
     return std::all_of(line.balls.begin(), line.balls.end(),
                        [&](int ball) { return free_[static_cast<std::size_t>(ball)]; });
   }
 
-  std::vector<Line> lines_;
+  std::vector<ThreadedLine> lines_;
   std::size_t usual_;
   std::vector<bool> free_;
   std::vector<std::vector<std::size_t>> lines_of_;  ///< a ball
@@ -120,23 +115,29 @@ class Chooser {
 
 }  // namespace
 
-SortedRods SortIntoRods(const std::vector<Eigen::Vector3d>& balls_mm,
-                        const RodSortOptions& options) {
-  std::vector<Line> lines;
+std::vector<ThreadedLine> LinesThrough(const std::vector<Eigen::Vector3d>& balls_mm,
+                                       const RodSortOptions& options) {
+  std::vector<ThreadedLine> lines;
   const int count = static_cast<int>(balls_mm.size());
   for (int i = 0; i < count; ++i) {
     for (int j = i + 1; j < count; ++j) {
-      Line line = LineBetween(balls_mm, i, j, options);
+      ThreadedLine line = LineBetween(balls_mm, i, j, options);
       if (line.balls.size() >= kFewest && line.balls.size() <= kMost + 1) {
         lines.push_back(std::move(line));
       }
     }
   }
+  return lines;
+}
+
+SortedRods SortIntoRods(const std::vector<Eigen::Vector3d>& balls_mm,
+                        const RodSortOptions& options) {
+  std::vector<ThreadedLine> lines = LinesThrough(balls_mm, options);
   AddWithoutOne(options.usual, lines);
-  const auto is_long = [](const Line& line) { return line.balls.size() > kMost; };
+  const auto is_long = [](const ThreadedLine& line) { return line.balls.size() > kMost; };
   lines.erase(std::remove_if(lines.begin(), lines.end(), is_long), lines.end());
   // The usual ones first, then long ones: a good choice is found early.
-  std::stable_sort(lines.begin(), lines.end(), [&](const Line& x, const Line& y) {
+  std::stable_sort(lines.begin(), lines.end(), [&](const ThreadedLine& x, const ThreadedLine& y) {
     return std::make_tuple(x.balls.size() == options.usual, x.balls.size(), -x.bend) >
            std::make_tuple(y.balls.size() == options.usual, y.balls.size(), -y.bend);
   });
@@ -146,7 +147,7 @@ SortedRods SortIntoRods(const std::vector<Eigen::Vector3d>& balls_mm,
     sorted.rods.push_back(lines[line].balls);
     for (const int ball : lines[line].balls) used[static_cast<std::size_t>(ball)] = true;
   }
-  for (int i = 0; i < count; ++i) {
+  for (int i = 0; i < static_cast<int>(balls_mm.size()); ++i) {
     if (!used[static_cast<std::size_t>(i)]) sorted.left_over.push_back(i);
   }
   return sorted;

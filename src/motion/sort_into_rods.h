@@ -11,6 +11,16 @@ struct RodSortOptions {
   double slack_mm = 0;          ///< and this much for the noise
 };
 
+/// Holds balls on a line.
+struct ThreadedLine {
+  std::vector<int> balls;  ///< in order along it
+  double bend = 0;         ///< largest distance off it, in units of what is allowed
+};
+
+/// Lists the lines between any two balls that hold one more at least, and all that lie between.
+std::vector<ThreadedLine> LinesThrough(const std::vector<Eigen::Vector3d>& balls_mm,
+                                       const RodSortOptions& options);
+
 /// Holds balls sorted into rods; every ball stands in one rod or is left over.
 struct SortedRods {
   std::vector<std::vector<int>> rods;  ///< in the order in which they are threaded

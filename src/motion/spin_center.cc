@@ -7,6 +7,7 @@
 #include "motion/center_verdict.h"
 #include "motion/fit_law.h"
 #include "motion/free_path.h"
+#include "motion/law_average.h"
 #include "motion/law_evidence.h"
 
 namespace stereomotion {
@@ -14,6 +15,9 @@ namespace {
 
 void CheckOptions(const SpinCenterOptions& options) {
   if (!(options.reject_sigma > 0)) throw std::invalid_argument("reject_sigma is not above 0");
+  if (options.only_given_law && !options.law) {
+    throw std::invalid_argument("only_given_law without a law");
+  }
   if (options.path_psd_mm2_s3 && !(*options.path_psd_mm2_s3 > 0)) {
     throw std::invalid_argument("path_psd_mm2_s3 is not above 0");
   }
@@ -33,7 +37,8 @@ std::vector<int> LeaveOutGross(CenterProblem& problem, const SpinCenterOptions& 
 }
 
 void TakeLaw(const SpinCenterOptions& options, SpinCenterResult& result) {
-  const LawChoice choice = ChooseLaw(result.laws);
+  LawChoice choice = ChooseLaw(result.laws);
+  if (result.bends_otherwise) choice = {};
   result.law_given = options.law.has_value();
   result.law = options.law.value_or(choice.law);
   result.evidence_open = !result.law_given && choice.evidence_open;
@@ -47,6 +52,7 @@ SpinCenterResult Weigh(const CenterProblem& problem, const SpinCenterOptions& op
   SpinCenterResult result;
   result.range_of_rotation_rad = RangeOfRotation(problem.poses);
   for (const PathLaw law : {PathLaw::kFixed, PathLaw::kUniform, PathLaw::kAccelerated}) {
+    if (options.only_given_law && law != options.law) continue;
     result.laws.push_back(FitLaw(problem, law, options.with_calibration));
   }
   result.laws.push_back(FitFree(problem));
@@ -54,7 +60,12 @@ SpinCenterResult Weigh(const CenterProblem& problem, const SpinCenterOptions& op
     result.laws.back().center = FindOnFreePath(problem, *options.path_psd_mm2_s3);
   }
   MarkAdequate(result.laws);
+  WeighLaws(result.laws);
+  if (!options.only_given_law) {
+    result.bends_otherwise = BendsOtherwise(result.laws, FitCubic(problem));
+  }
   TakeLaw(options, result);
+  result.covariance_law_unknown_mm2 = CenterCovarianceLawUnknown(result);
   return result;
 }
 

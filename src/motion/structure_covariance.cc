@@ -11,18 +11,33 @@ namespace {
 /// Of the triangle's diagonal, smallest to largest after scaling: below it a direction is open.
 constexpr double kLeastPivot = 1e-8;
 
+/// Finds an orthonormal basis of all that is orthogonal to the columns.
+Eigen::MatrixXd Complement(const Eigen::MatrixXd& columns) {
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(columns);
+  const Eigen::MatrixXd q = qr.householderQ();
+  return q.rightCols(columns.rows() - columns.cols());
+}
+
 /// Spans all shifts of the balls that keep the gauge: 3M × (3M − 6), orthonormal.
 Eigen::MatrixXd GaugeBasis(const std::vector<Eigen::Vector3d>& gauge_mm) {
-  const auto size = static_cast<Eigen::Index>(3 * gauge_mm.size());
-  Eigen::MatrixXd constraints(size, 6);
+  Eigen::MatrixXd constraints(static_cast<Eigen::Index>(3 * gauge_mm.size()), 6);
   for (std::size_t i = 0; i < gauge_mm.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(3 * i);
     constraints.block<3, 3>(row, 0).setIdentity();
     constraints.block<3, 3>(row, 3) = Hat(gauge_mm[i]);
   }
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(constraints);
-  const Eigen::MatrixXd q = qr.householderQ();
-  return q.rightCols(size - 6);
+  return Complement(constraints);
+}
+
+/// Spans the shifts along a straight rod that keep the balls' mean: 3M × (M − 1), orthonormal.
+Eigen::MatrixXd RodBasis(const Eigen::Vector3d& rod_in_body, std::size_t balls) {
+  const auto count = static_cast<Eigen::Index>(balls);
+  const Eigen::MatrixXd along = Complement(Eigen::MatrixXd::Ones(count, 1));
+  Eigen::MatrixXd basis(3 * count, count - 1);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    basis.middleRows<3>(3 * i) = rod_in_body * along.row(i);
+  }
+  return basis;
 }
 
 /// Accumulates the triangle R of [structure, rig parameters], frame by frame.
@@ -40,13 +55,15 @@ class Triangle {
   void Add(const StructureProblem& problem, const StructureFrame& frame) {
     Eigen::Index rows = 0;
     for (const PointObservation& observation : frame.observations) rows += observation.rows;
+    const Eigen::MatrixXd directions = PoseDirections(problem, frame);
+    const Eigen::Index unknowns = directions.cols();
     Eigen::MatrixXd pose(rows, 6);
     Eigen::MatrixXd rest = Eigen::MatrixXd::Zero(rows, r_.cols());
     FillRows(problem, frame, pose, rest);
-    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(pose);
+    const Eigen::HouseholderQR<Eigen::MatrixXd> qr(pose * directions);
     rest.applyOnTheLeft(qr.householderQ().adjoint());
-    Eigen::MatrixXd stack(r_.rows() + rows - 6, r_.cols());
-    stack << r_, rest.bottomRows(rows - 6);
+    Eigen::MatrixXd stack(r_.rows() + rows - unknowns, r_.cols());
+    stack << r_, rest.bottomRows(rows - unknowns);
     const Eigen::HouseholderQR<Eigen::MatrixXd> update(stack);
     r_ = update.matrixQR().topRows(r_.rows()).triangularView<Eigen::Upper>();
   }
@@ -98,7 +115,9 @@ class Triangle {
 
 std::optional<StructureCovariance> CovarianceOfStructure(
     const StructureProblem& problem, const std::vector<Eigen::Vector3d>& gauge_mm, const Rig& rig) {
-  Triangle triangle(GaugeBasis(gauge_mm), rig);
+  Triangle triangle(
+      problem.rod_in_body ? RodBasis(*problem.rod_in_body, gauge_mm.size()) : GaugeBasis(gauge_mm),
+      rig);
   for (const StructureFrame& frame : problem.frames) triangle.Add(problem, frame);
   const Eigen::Index n = triangle.structure();
   const Eigen::MatrixXd r = triangle.r().topLeftCorner(n, n);

@@ -16,8 +16,9 @@ struct StructureCovariance {
 };
 
 /// Finds the covariance of the balls' places on the constraints Σ δxᵢ = 0, Σ x⁰ᵢ × δxᵢ = 0
-/// (`gauge_mm`: the x⁰ᵢ, mean zero), the poses eliminated, nothing damped. Nothing where the
-/// observations leave some other direction open.
+/// (`gauge_mm`: the x⁰ᵢ, mean zero), the poses eliminated, nothing damped. Of a straight rod the
+/// shifts are along it (rank M − 1). Nothing where the observations leave some other direction
+/// open.
 std::optional<StructureCovariance> CovarianceOfStructure(
     const StructureProblem& problem, const std::vector<Eigen::Vector3d>& gauge_mm, const Rig& rig);
 

@@ -20,6 +20,9 @@ struct StructureFrame {
 /// Holds geometry and poses at one state, with the observations that count.
 struct StructureProblem {
   std::vector<Eigen::Vector3d> balls_in_body_mm;
+  /// Direction of the line that all balls lie on, then taken for straight: balls shift along it
+  /// only, and the roll about it is open. Nothing: any other body.
+  std::optional<Eigen::Vector3d> rod_in_body;
   std::vector<StructureFrame> frames;
 
   /// Counts the observations of every ball.
@@ -40,6 +43,10 @@ struct StructureResidual {
 std::optional<StructureResidual> CompareStructure(const PointObservation& observation,
                                                   const Rigid3& world_from_body,
                                                   const Eigen::Vector3d& ball_in_body_mm);
+
+/// Spans, in its columns, the changes (δθ, δt) of a frame's pose that show: all six, of a straight
+/// rod all but the roll.
+Eigen::MatrixXd PoseDirections(const StructureProblem& problem, const StructureFrame& frame);
 
 /// Sets the problem up: the measured frames that can carry a pose, and of them what the cameras can
 /// see. The balls are shifted so that their mean is the origin, the poses likewise.

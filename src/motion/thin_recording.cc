@@ -42,17 +42,19 @@ void Spread(const PoseSeries& series, const std::vector<std::size_t>& kept, Spin
 
 }  // namespace
 
-MotionData ThinnedRecording(const MotionData& data, std::size_t stride,
-                            std::vector<std::size_t>& kept) {
-  MotionData thinned = WithoutFrames(data);
-  kept.clear();
+std::vector<std::size_t> EveryNthPose(const MotionData& data, std::size_t stride) {
+  std::vector<std::size_t> kept;
   std::size_t measured = 0;
   for (std::size_t i = 0; i < data.frames.size(); ++i) {
-    if (!data.frames[i].pose.measured || measured++ % stride != 0) continue;
-    kept.push_back(i);
-    thinned.frames.push_back(data.frames[i]);
+    if (data.frames[i].pose.measured && measured++ % stride == 0) kept.push_back(i);
   }
-  return thinned;
+  return kept;
+}
+
+MotionData FramesAt(const MotionData& data, const std::vector<std::size_t>& kept) {
+  MotionData part = WithoutFrames(data);
+  for (const std::size_t i : kept) part.frames.push_back(data.frames[i]);
+  return part;
 }
 
 MotionData FirstPart(const MotionData& data, std::size_t measured) {

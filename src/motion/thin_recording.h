@@ -8,10 +8,11 @@
 
 namespace stereomotion {
 
-/// Takes every `stride`-th measured frame of the data, the first one included. `kept` receives
-/// their indices.
-MotionData ThinnedRecording(const MotionData& data, std::size_t stride,
-                            std::vector<std::size_t>& kept);
+/// Finds every `stride`-th frame with a pose, the first one included.
+std::vector<std::size_t> EveryNthPose(const MotionData& data, std::size_t stride);
+
+/// Takes these frames of the data.
+MotionData FramesAt(const MotionData& data, const std::vector<std::size_t>& kept);
 
 /// Takes the frames up to the `measured`-th one with a pose.
 MotionData FirstPart(const MotionData& data, std::size_t measured);

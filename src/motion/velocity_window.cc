@@ -1,6 +1,7 @@
 #include "motion/velocity_window.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -12,13 +13,17 @@ namespace {
 
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
-/// Squared bias that a window may have, of the variance (mean over the components): the reported
-/// covariance includes it, so its 95 % intervals stay within 1 % of their coverage.
-constexpr double kBiasShare = 0.1;
+/// Squared bias that a window may have, of the variance, in the direction where it is worst. It is
+/// foretold as a mean over a neighbourhood (and included in the covariance); at the crest of a
+/// swing it is twice that: then 95 % intervals still cover 94 %.
+constexpr double kBiasShare = 0.05;
 /// Degree 2 serves ω and v as degree 1, but α and a too; degree 4 lets the window grow where the
 /// rate itself bends. Odd degrees have no less bias in a symmetrical window than the even one
-/// below.
-constexpr int kDegrees[] = {1, 2, 4};
+/// below. Degree 6 is for motion so fast that degree 4 bends away within its own five poses.
+constexpr int kDegrees[] = {1, 2, 4, 6};
+/// No pilot tells the bias of degree 6: its window keeps to this share of the reach that χ² allows,
+/// where the bias is 0.8^8 = a sixth of what χ² does not see; twice over where it is one-sided.
+constexpr double kSexticShare = 0.8;
 constexpr int kHalfWindows[] = {1, 2, 3, 4, 5, 6, 8, 10, 13, 16, 20, 25, 32, 40, 50, 64, 80, 100};
 
 /// (ω, v, α, a) by the coefficients of order 0, 1, 2: ω = J_l(w) ẇ and its derivative, at the small
@@ -58,7 +63,9 @@ double LargestShare(const Matrix12& bias, const Matrix12& noise, int blocks) {
   for (int b = 0; b < blocks; ++b) {
     const Eigen::Matrix3d of_noise = noise.block<3, 3>(3 * b, 3 * b);
     const Eigen::Matrix3d of_bias = bias.block<3, 3>(3 * b, 3 * b);
-    largest = std::max(largest, of_noise.llt().solve(of_bias).trace() / 3);
+    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix3d> share(of_bias, of_noise,
+                                                                          Eigen::EigenvaluesOnly);
+    largest = std::max(largest, share.eigenvalues()[2]);
   }
   return largest;
 }
@@ -100,6 +107,14 @@ bool Better(const Candidate& a, const Candidate& b) {
   return a.spread < b.spread;
 }
 
+/// Most poses in a window of a degree: as many as a symmetrical one of the pilots' reach has, also
+/// where the window is one-sided.
+int ReachOf(int degree, const PathBend& bend, bool one_sided) {
+  int half = degree <= 2 ? bend.quartic_reach : bend.sextic_reach;
+  if (degree > 4) half = static_cast<int>(kSexticShare * (one_sided ? kSexticShare : 1) * half);
+  return 2 * std::max(half, std::max(degree / 2, 1)) + 1;
+}
+
 /// Pose at a time inside a stretch: measured, or interpolated where a gap is filled.
 Rigid3 ReferenceAt(const PoseStretch& stretch, double time_s, std::size_t after) {
   if (stretch.times_s[after] == time_s) return stretch.poses[after];
@@ -130,14 +145,15 @@ BodyVelocity VelocityAt(const PoseStretch& stretch, const PathRoughness& roughne
     for (; more_low && low > first; --low) {
       if (!(more_low = window.Add(low - 1))) break;
     }
+    const bool one_sided = high - after != after - low + (measured ? 1 : 0);
     for (const int degree : kDegrees) {
-      const int reach = degree <= 2 ? bend.quartic_reach : bend.sextic_reach;
-      if (window.poses <= degree || (half > std::max(reach, 1) && best)) continue;
+      if (window.poses <= degree || (best && window.poses > ReachOf(degree, bend, one_sided)))
+        continue;
       const Candidate candidate = Judge(window, degree, bend);
       if (!best || Better(candidate, *best)) best = candidate;
     }
     if (half >= max_half_window ||
-        (best && half > std::max(bend.quartic_reach, bend.sextic_reach))) {
+        (best && window.poses > 2 * std::max(bend.quartic_reach, bend.sextic_reach))) {
       break;
     }
   }

@@ -1,22 +1,18 @@
 #include "stereomotion/pipeline/learn_body.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
 
 #include "learn_points.h"
 #include "learn_shape.h"
-#include "stereomotion/motion/refine_structure.h"
-#include "stereomotion/motion/time_offset.h"
+#include "motion/find_lone_rod.h"
+#include "refine_learned.h"
 #include "stereomotion/pipeline/motion_data_of.h"
 
 namespace stereomotion {
 namespace {
-
-/// Residuals (χ² per degree of freedom) beyond which the refined body is doubtful.
-constexpr double kDoubtfulChi2Dof = 2;
 
 const RigCamera& CameraOf(const MeasureSetup& setup, int camera) {
   const int index = camera == 0 ? setup.left_camera : setup.right_camera;
@@ -33,52 +29,18 @@ bool HasEnoughBalls(const std::vector<PointCloud>& frames, const GroupOptions& o
   return enough >= options.min_frames;
 }
 
-/// Puts a refined structure into a body: places, covariance (random and common part together: who
-/// reads the file has another recording, or another rig).
-void TakeStructure(const Structure& structure, Body& body) {
-  auto next = structure.balls_in_body_mm.begin();
-  for (Rod& rod : body.rods) {
-    for (Eigen::Vector3d& ball : rod.balls_in_body_mm) ball = *next++;
-  }
-  body.covariance_mm2 = structure.covariance_mm2;
-  if (structure.calibration_covariance_mm2.size() > 0) {
-    body.covariance_mm2 += structure.calibration_covariance_mm2;
-  }
-}
-
-/// Returns whether the body's geometry is refined now.
-bool Refine(const MotionData& data, Body& body, std::vector<std::string>& warnings) {
-  const auto structure = RefineStructure(data);
-  if (!structure) return false;
-  TakeStructure(*structure, body);
-  const double level = structure->chi2 / std::max(1, structure->dof);
-  if (level > kDoubtfulChi2Dof) {
-    warnings.push_back(body.name + ": residuals are " + std::to_string(std::sqrt(level)) +
-                       " times the image noise; the rig may be wrong or the body not rigid");
-  }
-  return true;
-}
-
-/// A lag bends the body, whose residuals then do not tell.
-void WarnOfLag(const MotionData& data, const Body& body, std::vector<std::string>& warnings) {
-  const auto offset = EstimateTimeOffset(data);
-  if (!offset || !offset->significant) return;
-  warnings.push_back(body.name + ": the right camera seems to be " +
-                     std::to_string(offset->offset_s) +
-                     " s late by its own timestamps; the learned body is bent by that");
-}
-
 /// Measures the recording with the bodies found so far, which also sees balls that were hidden from
 /// one camera or partly, and refines them on all of that.
 bool RefineOnRun(const PairSource& source, MeasureSetup setup, const MeasureOptions& options,
                  const std::vector<int>& frames_so_far, LearnedBodies& learned,
-                 const std::atomic<bool>* stop) {
+                 const std::atomic<bool>* stop, const std::function<void()>& each_pair) {
   setup.bodies = learned.bodies;
   std::vector<PairMeasurement> measurements;
   const auto sink = [&](const PairMeasurement& measurement) {
     measurements.push_back(measurement);
     measurements.back().left.clear();  // the detections themselves, which nobody needs
     measurements.back().right.clear();
+    if (each_pair && measurement.body == 0) each_pair();
     return true;
   };
   if (MeasureRecording(source, setup, options, sink, stop).interrupted) return false;
@@ -95,13 +57,26 @@ bool RefineOnRun(const PairSource& source, MeasureSetup setup, const MeasureOpti
                                  " pairs");
       continue;
     }
-    WarnOfLag(data, body, learned.warnings);
-    if (!Refine(data, body, learned.warnings) && body.covariance_mm2.size() == 0) {
+    if (!RefineBodyAndLag(data, body, learned.warnings) && body.covariance_mm2.size() == 0) {
       learned.warnings.push_back(body.name +
                                  ": its geometry could not be refined; it is only rough");
     }
   }
   return true;
+}
+
+bool AnyMoves(const std::vector<BallGroup>& groups) {
+  return std::any_of(groups.begin(), groups.end(),
+                     [](const BallGroup& group) { return group.moves; });
+}
+
+/// A rod alone is sought where no other body moves.
+std::vector<BallGroup> FindGroups(const std::vector<PointCloud>& frames,
+                                  const GroupOptions& options) {
+  std::vector<BallGroup> groups = GroupBalls(frames, options);
+  if (AnyMoves(groups)) return groups;
+  if (auto rod = FindLoneRod(frames, options)) groups.push_back(std::move(*rod));
+  return groups;
 }
 
 /// One body, with all that the first round knows of it.
@@ -160,7 +135,7 @@ LearnedBodies RefineFirst(const std::vector<FirstRound>& shapes,
                                  " balls that lie on no rod are left out");
     }
     std::vector<std::string> replaced;  // by what the second round says
-    Refine(ObservationsOfShape(first.shape, *first.group, pairs, setup), body, replaced);
+    RefineBody(ObservationsOfShape(first.shape, *first.group, pairs, setup), body, replaced);
     learned.bodies.push_back(std::move(body));
   }
   return learned;
@@ -171,20 +146,20 @@ LearnedBodies RefineFirst(const std::vector<FirstRound>& shapes,
 Expected<LearnedBodies, LearnBodyFailure> LearnBodies(const PairSource& source,
                                                       const MeasureSetup& setup,
                                                       const LearnBodyOptions& options,
-                                                      const std::atomic<bool>* stop) {
+                                                      const std::atomic<bool>* stop,
+                                                      const std::function<void()>& each_pair) {
   const RigCamera &left = CameraOf(setup, 0), &right = CameraOf(setup, 1);
   MeasureOptions measure = options.measure;
   measure.count =
       measure.count < 0 ? options.max_pairs : std::min(measure.count, options.max_pairs);
-  const auto pairs = DetectPairs(source, setup, measure, stop);
+  const auto pairs = DetectPairs(source, setup, measure, stop, each_pair);
   if (!pairs) return Unexpected{LearnBodyFailure::kInterrupted};
   const LearnedPoints points = FindPoints(*pairs, left, right);
   const GroupOptions grouping;
   if (!HasEnoughBalls(points.frames, grouping)) return Unexpected{LearnBodyFailure::kTooFewBalls};
-  const std::vector<BallGroup> groups = GroupBalls(points.frames, grouping);
+  const std::vector<BallGroup> groups = FindGroups(points.frames, grouping);
   if (groups.empty()) return Unexpected{LearnBodyFailure::kNoGroup};
-  const bool moving =
-      std::any_of(groups.begin(), groups.end(), [](const BallGroup& group) { return group.moves; });
+  const bool moving = AnyMoves(groups);
   auto shapes = FindShapes(groups, moving, *pairs, setup, options.ball_diameter_mm);
   if (shapes.empty()) {
     return Unexpected{moving ? LearnBodyFailure::kNoGroup : LearnBodyFailure::kNoMotion};
@@ -193,7 +168,7 @@ Expected<LearnedBodies, LearnBodyFailure> LearnBodies(const PairSource& source,
   LearnedBodies learned = RefineFirst(shapes, *pairs, setup, moving);
   std::vector<int> found;
   for (const FirstRound& first : shapes) found.push_back(first.group->CountFrames());
-  if (!RefineOnRun(source, setup, measure, found, learned, stop)) {
+  if (!RefineOnRun(source, setup, measure, found, learned, stop, each_pair)) {
     return Unexpected{LearnBodyFailure::kInterrupted};
   }
   return learned;

@@ -98,7 +98,8 @@ double SigmaMm(const LearnPair& pair, const StereoCandidate& candidate, double s
 std::optional<std::vector<LearnPair>> DetectPairs(const PairSource& source,
                                                   const MeasureSetup& setup,
                                                   const MeasureOptions& options,
-                                                  const std::atomic<bool>* stop) {
+                                                  const std::atomic<bool>* stop,
+                                                  const std::function<void()>& each_pair) {
   const std::int64_t rest = source.size() - options.first;
   const std::int64_t end =
       options.first + (options.count < 0 ? rest : std::min(rest, options.count));
@@ -111,6 +112,7 @@ std::optional<std::vector<LearnPair>> DetectPairs(const PairSource& source,
     pairs.push_back({pair->frames.left.index,
                      pair->frames.left.timestamp_ns,
                      {std::move(pair->left), std::move(pair->right)}});
+    if (each_pair) each_pair();
   }
   return pairs;
 }

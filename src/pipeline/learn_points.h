@@ -3,6 +3,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -19,10 +20,12 @@ struct LearnPair {
 };
 
 /// Detects the balls of a recording as `MeasureRecording` does; nothing where it was stopped.
+/// `each_pair` is called after each.
 std::optional<std::vector<LearnPair>> DetectPairs(const PairSource& source,
                                                   const MeasureSetup& setup,
                                                   const MeasureOptions& options,
-                                                  const std::atomic<bool>* stop);
+                                                  const std::atomic<bool>* stop,
+                                                  const std::function<void()>& each_pair = {});
 
 /// Holds what may be balls in 3D, a frame pair, and how far the rays usually miss each other.
 struct LearnedPoints {

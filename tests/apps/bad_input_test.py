@@ -288,8 +288,8 @@ class BadInput(unittest.TestCase):
 
     def test_unknown_command(self):
         result = run("record", "--output", "rec", cwd=self.dir)
-        self.refused(2, "this version has no command 'record', expected one of calibrate, convert, "
-                     "print-target, simulate, track", result=result)
+        self.refused(2, "this version has no command 'record', expected one of analyse, calibrate, "
+                     "convert, print-target, simulate, track", result=result)
         self.assertNotIn("did you mean", result.stderr)
         self.refused(2, "did you mean 'track'?", result=run("trak", cwd=self.dir))
 

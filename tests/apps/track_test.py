@@ -385,6 +385,51 @@ class SeveralBodies(unittest.TestCase):
         self.assertTrue(any(w.startswith("body 'absent':") for w in record["warnings"]))
 
 
+class LearnedBody(unittest.TestCase):
+    """Without --body: the body is learned, and its file measures the recording as it was."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.dir = pathlib.Path(tempfile.mkdtemp(prefix="stereomotion-test-"))
+        (cls.dir / "rig.yaml").write_text(RIG)
+        (cls.dir / "body.yaml").write_text(BODY)
+        (cls.dir / "scenario.yaml").write_text(SCENARIO % (1.5, *LAMP_MM, FRAMES))
+        made = run("simulate", "scenario.yaml", "--output", "rec", cwd=cls.dir)
+        if made.returncode != 0:
+            raise RuntimeError("simulate failed: " + made.stderr)
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.dir, ignore_errors=True)
+
+    def track(self, output, *more):
+        result = run("track", "--left", "rec/cam0", "--right", "rec/cam1", "--output", output,
+                     "--no-motion", *more, cwd=self.dir)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertNotIn("[#", result.stderr)  # a progress bar is for terminals
+        record = json.loads((self.dir / output / "run.json").read_text())
+        self.assertEqual(record["frames"]["tracked"], FRAMES)
+        return record
+
+    def test_its_file_gives_the_same_run(self):
+        learned = self.track("learned")
+        self.assertTrue(learned["bodies"][0]["learned"])
+        self.assertEqual(learned["warnings"], [])
+        body = (self.dir / "learned/body.yaml").read_text()
+        self.assertIn("covariance:", body)
+        again = self.track("again", "--body", "learned/body.yaml")
+        self.assertFalse(again["bodies"][0]["learned"])
+        for name in ("poses.csv", "balls.csv", "detections.csv"):
+            self.assertEqual((self.dir / "learned" / name).read_bytes(),
+                             (self.dir / "again" / name).read_bytes(), name)
+        # ... and, a body of no covariance changes no pose: that is a common part only.
+        plain = body.split("covariance:")[0]
+        (self.dir / "plain.yaml").write_text(plain)
+        self.track("plain", "--body", "plain.yaml")
+        self.assertEqual((self.dir / "learned/poses.csv").read_bytes(),
+                         (self.dir / "plain/poses.csv").read_bytes())
+
+
 class Motion(unittest.TestCase):
     """The end of a run of one body."""
 

@@ -1,15 +1,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
-#include "stereomotion/io/c3d_file.h"
 #include "stereomotion/motion/joint.h"
-#include "stereomotion/motion/marker_cluster.h"
-#include "tests/support/recording_run.h"
+#include "tests/support/ktk_markers.h"
 
 // Marker clusters that an Optotrak followed (real/clusters_ktk, Kinetics Toolkit): a probe whose
 // geometry is given, and the right arm of a wheelchair racer. No wheel carries markers there.
@@ -19,29 +16,12 @@ namespace {
 
 using Labels = std::vector<std::string>;
 
-C3dPoints ReadKtk(const std::string& name) {
-  return ReadC3d(SharedData() / "real/clusters_ktk" / ("kinematics_racing_" + name + ".c3d"));
-}
-
-/// Picks markers by their labels, all frames.
-MarkerSeries Pick(const C3dPoints& points, const Labels& labels) {
-  MarkerSeries picked;
-  picked.rate_hz = points.rate_hz;
-  picked.first_frame = points.first_frame;
-  picked.points_mm.resize(points.points_mm.size());
-  for (const std::string& label : labels) {
-    const auto at = std::find(points.labels.begin(), points.labels.end(), label);
-    if (at == points.labels.end()) throw std::runtime_error("no marker " + label);
-    for (std::size_t t = 0; t < points.points_mm.size(); ++t) {
-      picked.points_mm[t].push_back(
-          points.points_mm[t][static_cast<std::size_t>(at - points.labels.begin())]);
-    }
-  }
-  return picked;
+C3dPoints ReadRacing(const std::string& name) {
+  return ReadKtk("kinematics_racing_" + name + ".c3d");
 }
 
 MarkerSeries PickProbe(const C3dPoints& points) {
-  return Pick(points, {"Probe1", "Probe2", "Probe3", "Probe4", "Probe5", "Probe6"});
+  return PickMarkers(points, {"Probe1", "Probe2", "Probe3", "Probe4", "Probe5", "Probe6"});
 }
 
 /// The peer's file of the probe; its tip is the origin.
@@ -82,7 +62,7 @@ TEST(MotionClusters, ProbeFitsItsGivenGeometry) {
   // 0.07–0.18 mm by the peer, more or less by a digit for the frames in which a marker lacks.
   constexpr double kLeast_mm = 0.065, kMost_mm = 0.19;
   for (const std::string& name : kProbings) {
-    const double rms_mm = RigidRms_mm(PickProbe(ReadKtk(name)), GivenProbe_mm());
+    const double rms_mm = RigidRms_mm(PickProbe(ReadRacing(name)), GivenProbe_mm());
     fmt::print("{}: {:.3f} mm\n", name, rms_mm);
     EXPECT_GT(rms_mm, kLeast_mm) << name;
     EXPECT_LT(rms_mm, kMost_mm) << name;
@@ -91,7 +71,7 @@ TEST(MotionClusters, ProbeFitsItsGivenGeometry) {
 
 TEST(MotionClusters, LearnedProbeFitsBetterThanTheGivenOne) {
   for (const std::string& name : kProbings) {
-    const MarkerSeries probe = PickProbe(ReadKtk(name));
+    const MarkerSeries probe = PickProbe(ReadRacing(name));
     const auto cluster = MakeCluster(probe);
     ASSERT_TRUE(cluster) << name;
     const Eigen::Matrix3Xd learned_mm = Matrix(cluster->data.balls_in_body_mm);
@@ -126,15 +106,17 @@ Eigen::Vector3d MeanInBody_mm(const MarkerSeries& marker, const PoseSeries& pose
 }
 
 TEST(MotionClusters, ElbowLiesBetweenTheEpicondyles) {
-  const C3dPoints points = ReadKtk("full");
-  const auto arm = MakeCluster(Pick(points, {"ArmR1", "ArmR2", "ArmR3"}));
-  const auto forearm = MakeCluster(Pick(points, {"ForearmR1", "ForearmR2", "ForearmR3"}));
+  const C3dPoints points = ReadRacing("full");
+  const auto arm = MakeCluster(PickMarkers(points, {"ArmR1", "ArmR2", "ArmR3"}));
+  const auto forearm = MakeCluster(PickMarkers(points, {"ForearmR1", "ForearmR2", "ForearmR3"}));
   ASSERT_TRUE(arm && forearm);
   const PoseSeries arm_poses = PosesOf(arm->data);
   const auto elbow = FindJoint(arm_poses, PosesOf(forearm->data));
   ASSERT_TRUE(elbow);
-  const Eigen::Vector3d lateral_mm = MeanInBody_mm(Pick(points, {"LateralEpicondyleR"}), arm_poses);
-  const Eigen::Vector3d medial_mm = MeanInBody_mm(Pick(points, {"MedialEpicondyleR"}), arm_poses);
+  const Eigen::Vector3d lateral_mm =
+      MeanInBody_mm(PickMarkers(points, {"LateralEpicondyleR"}), arm_poses);
+  const Eigen::Vector3d medial_mm =
+      MeanInBody_mm(PickMarkers(points, {"MedialEpicondyleR"}), arm_poses);
   const double width_mm = (lateral_mm - medial_mm).norm();
   const Eigen::Vector3d off_mm = elbow->center_in_first_mm - (lateral_mm + medial_mm) / 2;
   fmt::print(

@@ -75,6 +75,8 @@ TEST(Butterworth, RefusesWhatCannotBe) {
   EXPECT_THROW(DesignZeroPhaseButterworth(3, 6, 30), std::invalid_argument);
   EXPECT_THROW(DesignZeroPhaseButterworth(0, 6, 30), std::invalid_argument);
   EXPECT_THROW(DesignZeroPhaseButterworth(4, 15, 30), std::invalid_argument);
+  // 30 frames/s by times in whole ns: a hair more than 30.
+  EXPECT_THROW(DesignZeroPhaseButterworth(4, 15, 1 / 0.033333333), std::invalid_argument);
   EXPECT_THROW(DesignZeroPhaseButterworth(4, 0, 30), std::invalid_argument);
   EXPECT_THROW(DesignZeroPhaseButterworth(4, std::nan(""), 30), std::invalid_argument);
 }

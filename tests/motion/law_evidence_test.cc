@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace stereomotion {
 namespace {
 
@@ -57,6 +59,29 @@ TEST(LawEvidence, LargerNoiseRefutesNothing) {
   const auto fits = Fits(4 * 3694, 4 * 3691, 4 * 3688, 4 * 3400);
   EXPECT_TRUE(fits[0].adequate);
   EXPECT_EQ(ChooseLaw(fits).law, PathLaw::kFixed);
+}
+
+/// A third-order term costs 3 ln 4000 = 24.9.
+TEST(LawEvidence, CubicThatGainsStronglyBendsOtherwise) {
+  const auto fits = Fits(1e6, 1e5, 3688);
+  LawFit cubic = fits[2];
+  cubic.dof -= 3;
+  const auto gaining = [&cubic, &fits](double gain) {
+    cubic.chi2 = fits[2].chi2 - gain;
+    cubic.bic = fits[2].bic + 24.9 - gain;
+    return cubic;
+  };
+  EXPECT_FALSE(BendsOtherwise(fits, gaining(30)));
+  EXPECT_TRUE(BendsOtherwise(fits, gaining(32)));
+}
+
+/// AIC: three parameters are worth 6; a law that gains 6 weighs as much as the narrower one.
+TEST(LawEvidence, WeightsAreAkaikes) {
+  auto fits = Fits(3691 + 6, 3691, 3691);
+  WeighLaws(fits);
+  EXPECT_NEAR(fits[0].weight, fits[1].weight, 1e-12);
+  EXPECT_NEAR(fits[2].weight / fits[1].weight, std::exp(-3.0), 1e-12);
+  EXPECT_NEAR(fits[0].weight + fits[1].weight + fits[2].weight, 1, 1e-12);
 }
 
 }  // namespace

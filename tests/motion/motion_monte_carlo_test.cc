@@ -7,9 +7,8 @@
 #include "stereomotion/geometry/so3.h"
 #include "stereomotion/motion/one_axis.h"
 #include "stereomotion/motion/screw_axis.h"
-#include "stereomotion/motion/velocity.h"
-#include "tests/support/coverage_table.h"
 #include "tests/support/motion_bound.h"
+#include "tests/support/motion_cases.h"
 #include "tests/support/motion_scene.h"
 #include "tests/support/test_rng.h"
 
@@ -19,26 +18,7 @@ namespace {
 constexpr int kRepetitions = 2000;
 
 /// Rows of all tables in this program that are checked for consistency.
-constexpr int kTests = 10 * 12 + 2 * 6 + 8 * 8;
-
-struct Case {
-  const char* name;
-  MotionPlan (*plan)();
-};
-
-std::string NameOf(const ::testing::TestParamInfo<Case>& info) { return info.param.name; }
-
-void AddAcross(const std::string& quantity, const Eigen::Vector3d& axis,
-               const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance,
-               CoverageTable& table) {
-  const auto ways = Across(axis);
-  table.Add(quantity, ways.transpose() * error, ways.transpose() * covariance * ways);
-}
-
-void AddNumber(const std::string& quantity, double error, double sigma, CoverageTable& table) {
-  table.Add(quantity, Eigen::VectorXd::Constant(1, error),
-            Eigen::MatrixXd::Constant(1, 1, sigma * sigma));
-}
+constexpr int kTests = 8 * 4 + 3 * 5;
 
 /// The screw that truly leads from one pose to another: direction, a point of the axis, angle,
 /// pitch.
@@ -72,7 +52,7 @@ void AddScrew(const ScrewAxis& screw, const TrueScrew& truth, CoverageTable& tab
             std::sqrt(screw.covariance(7, 7)), table);
 }
 
-class ScrewMonteCarlo : public ::testing::TestWithParam<Case> {};
+class ScrewMonteCarlo : public ::testing::TestWithParam<MotionCase> {};
 
 TEST_P(ScrewMonteCarlo, Intervals) {
   std::mt19937_64 rng = MakeTestRng();
@@ -90,13 +70,7 @@ TEST_P(ScrewMonteCarlo, Intervals) {
   EXPECT_TRUE(table.Holds(kRepetitions, FamilyZ(kTests)));
 }
 
-const auto kMotions =
-    ::testing::Values(Case{"Fixed", FixedMotion}, Case{"Uniform", UniformMotion},
-                      Case{"Accelerated", AcceleratedMotion}, Case{"Screw", ScrewMotion},
-                      Case{"Precession", PrecessionMotion}, Case{"SmallRange", SmallRangeMotion},
-                      Case{"SingleAxis", SingleAxisMotion}, Case{"Random", RandomMotion});
-
-INSTANTIATE_TEST_SUITE_P(Motions, ScrewMonteCarlo, kMotions, NameOf);
+INSTANTIATE_TEST_SUITE_P(Motions, ScrewMonteCarlo, ::testing::ValuesIn(AllMotions()), NameOf);
 
 /// A wheel: its axis moves across itself, so that no line is the axis of the whole run.
 MotionPlan RollingMotion() {
@@ -114,7 +88,7 @@ MotionTruth MiddleOf(MotionPlan plan) {
   return TrueMotion(plan)[1];
 }
 
-class MeanAxisMonteCarlo : public ::testing::TestWithParam<Case> {};
+class MeanAxisMonteCarlo : public ::testing::TestWithParam<MotionCase> {};
 
 /// Compares with the instantaneous screw axis at mid-run: of a pure screw that is the run's.
 void AddMeanAxis(const MeanAxis& mean, const MotionScene& scene, CoverageTable& table) {
@@ -154,45 +128,10 @@ TEST_P(MeanAxisMonteCarlo, WholeRun) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Motions, MeanAxisMonteCarlo,
-                         ::testing::Values(Case{"Screw", ScrewMotion},
-                                           Case{"SingleAxis", SingleAxisMotion},
-                                           Case{"Rolling", RollingMotion}),
+                         ::testing::Values(MotionCase{"Screw", ScrewMotion},
+                                           MotionCase{"SingleAxis", SingleAxisMotion},
+                                           MotionCase{"Rolling", RollingMotion}),
                          NameOf);
-
-class VelocityMonteCarlo : public ::testing::TestWithParam<Case> {};
-
-void AddVelocity(const std::string& where, const BodyVelocity& velocity, const MotionTruth& truth,
-                 CoverageTable& table) {
-  const Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  table.Add("omega, " + where, velocity.omega_rad_s - truth.omega_rad_s,
-            velocity.covariance.topLeftCorner<3, 3>());
-  table.Add("v, " + where, velocity.velocity_mm_s - truth.VelocityOf(origin),
-            velocity.covariance.block<3, 3>(3, 3));
-  if (!velocity.has_acceleration) return;
-  table.Add("alpha, " + where, velocity.alpha_rad_s2 - truth.alpha_rad_s2,
-            velocity.covariance.block<3, 3>(6, 6));
-  table.Add("a, " + where, velocity.acceleration_mm_s2 - truth.AccelerationOf(origin),
-            velocity.covariance.block<3, 3>(9, 9));
-}
-
-TEST_P(VelocityMonteCarlo, PerFrame) {
-  std::mt19937_64 rng = MakeTestRng();
-  const MotionScene scene = MakeMotionScene(GetParam().plan(), rng);
-  const std::size_t n = scene.truth.size();
-  CoverageTable table;
-  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
-    const auto velocities = EstimateVelocities(PosesOf(Observed(scene, rng)));
-    ASSERT_EQ(velocities.size(), n);
-    AddVelocity("first", velocities[0], scene.truth[0], table);
-    AddVelocity("quarter", velocities[n / 4], scene.truth[n / 4], table);
-    AddVelocity("middle", velocities[n / 2], scene.truth[n / 2], table);
-    AddVelocity("last", velocities[n - 1], scene.truth[n - 1], table);
-  }
-  fmt::print("{}", table.Text(std::string("velocity of ") + GetParam().name));
-  EXPECT_TRUE(table.Holds(1400, FamilyZ(kTests)));
-}
-
-INSTANTIATE_TEST_SUITE_P(Motions, VelocityMonteCarlo, kMotions, NameOf);
 
 }  // namespace
 }  // namespace stereomotion::testing

@@ -116,15 +116,6 @@ TEST(RefineStructure, TooFewBalls) {
     const auto structure = RefineStructure(data);
     return !structure && structure.error() == StructureFailure::kTooFewBalls;
   };
-  MotionData one_line = scene.exact;
-  one_line.balls_in_body_mm.resize(5);
-  for (MotionFrame& frame : one_line.frames) {
-    auto& points = frame.image_points;
-    points.erase(std::remove_if(points.begin(), points.end(),
-                                [](const ImagePoint& point) { return point.ball >= 5; }),
-                 points.end());
-  }
-  EXPECT_TRUE(failure(one_line));
   MotionData unseen = scene.exact;
   unseen.balls_in_body_mm.emplace_back(10, 20, 30);
   EXPECT_TRUE(failure(unseen));

@@ -127,6 +127,57 @@ TEST(LearnBodies, TwoBodiesAreToldApart) {
   ExpectLearned(learned->bodies[swapped ? 0 : 1], OtherBody());
 }
 
+TEST(LearnBodies, ARodAlone) {
+  Scenario scenario = MakeWideScenario();
+  scenario.body.rods.resize(1);
+  ShowBackground(scenario);
+  const StoredPairs pairs = Render(kPairs, [&](std::int64_t) { return scenario; });
+  const auto learned = LearnBodies(pairs, SetupOf(scenario), {});
+  ASSERT_TRUE(learned);
+  ASSERT_EQ(learned->bodies.size(), 1U);
+  EXPECT_TRUE(learned->warnings.empty());
+  const Body& body = learned->bodies[0];
+  ASSERT_EQ(body.rods.size(), 1U);
+  const auto ordered = InOrderOf(body, scenario.body);
+  ASSERT_TRUE(ordered);
+  // Places along the rod, from their mean; the covariance has no other directions.
+  const Eigen::Matrix3Xd is = BallColumns(body), truth = BallColumns(*ordered);
+  const Eigen::Vector3d along = (is.col(4) - is.col(0)).normalized();
+  const Eigen::Vector3d true_along = (truth.col(4) - truth.col(0)).normalized();
+  const Eigen::VectorXd true_mm =
+      (truth.colwise() - truth.rowwise().mean().eval()).transpose() * true_along;
+  const Eigen::VectorXd error_mm = is.transpose() * along - true_mm;
+  Eigen::MatrixXd to_places = Eigen::MatrixXd::Zero(5, 15);
+  for (Eigen::Index i = 0; i < 5; ++i) to_places.block<1, 3>(i, 3 * i) = along.transpose();
+  const Eigen::MatrixXd covariance_mm2 = to_places * body.covariance_mm2 * to_places.transpose();
+  EXPECT_NEAR(covariance_mm2.trace(), body.covariance_mm2.trace(),
+              1e-9 * body.covariance_mm2.trace());
+  ErrorStatistics errors;
+  const Eigen::Index free = 4;
+  errors.Add(error_mm.head(free), covariance_mm2.topLeftCorner(free, free));
+  EXPECT_TRUE(IsConsistent(errors, FamilyZ(4)));
+}
+
+TEST(LearnBodies, SameOnAnyNumberOfThreads) {
+  const Scenario scenario = MakeWideScenario();
+  const StoredPairs pairs = Render(kPairs, [&](std::int64_t) { return scenario; });
+  std::vector<Body> bodies;
+  for (const int threads : {1, 2}) {
+    LearnBodyOptions options;
+    options.measure.threads = threads;
+    std::int64_t steps = 0;
+    const auto learned = LearnBodies(pairs, SetupOf(scenario), options, nullptr, [&] { ++steps; });
+    ASSERT_TRUE(learned);
+    EXPECT_EQ(steps, 2 * kPairs);  // both rounds
+    bodies.push_back(learned->bodies.at(0));
+  }
+  for (const Body& body : bodies) {
+    EXPECT_EQ(BallColumns(body), BallColumns(bodies[0]));
+    EXPECT_EQ(body.covariance_mm2, bodies[0].covariance_mm2);
+    EXPECT_EQ(body.rods[0].ball_diameter_mm, bodies[0].rods[0].ball_diameter_mm);
+  }
+}
+
 TEST(LearnBodies, NothingMoves) {
   Scenario scenario = MakeWideScenario();
   scenario.motion.spin_in_world_rad_s.setZero();

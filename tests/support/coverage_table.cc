@@ -8,6 +8,7 @@ namespace stereomotion::testing {
 namespace {
 
 constexpr double kTwoSided95 = 1.959964;
+constexpr double kShare = 0.95;
 constexpr double kLowest = 0.93, kHighest = 0.97;
 constexpr double kLargestRatio = 1.05;
 
@@ -52,24 +53,45 @@ std::string CoverageTable::Text(const std::string& title) const {
   return text;
 }
 
+std::string CoverageTable::Failures(const Row& row, const Limits& limits, double family_z) {
+  if (row.errors.samples() == 0) return {};
+  std::string failures;
+  // Written so that a NaN fails.
+  const Eigen::VectorXd covered = row.covered / row.errors.samples();
+  if (!(covered.minCoeff() >= limits.lowest && covered.maxCoeff() <= limits.highest)) {
+    failures += fmt::format("{}: 95 % intervals cover {:.4f} to {:.4f}\n", row.quantity,
+                            covered.minCoeff(), covered.maxCoeff());
+  }
+  const auto consistent = IsConsistent(row.errors, family_z);
+  if (!consistent) failures += row.quantity + ": " + consistent.message() + "\n";
+  if (row.bound_rmse && !(row.errors.rmse() <= limits.ratio * *row.bound_rmse)) {
+    failures += fmt::format("{}: RMSE {} of the bound\n", row.quantity,
+                            row.errors.rmse() / *row.bound_rmse);
+  }
+  return failures;
+}
+
 ::testing::AssertionResult CoverageTable::Holds(int repetitions, double family_z) const {
   std::string failures;
   for (const Row& row : rows_) {
     const int n = row.errors.samples();
     if (n < repetitions) failures += fmt::format("{}: only {} repetitions\n", row.quantity, n);
-    if (n == 0) continue;
-    // Written so that a NaN fails.
-    const Eigen::VectorXd covered = row.covered / n;
-    if (!(covered.minCoeff() >= kLowest && covered.maxCoeff() <= kHighest)) {
-      failures += fmt::format("{}: 95 % intervals cover {:.4f} to {:.4f}\n", row.quantity,
-                              covered.minCoeff(), covered.maxCoeff());
-    }
-    const auto consistent = IsConsistent(row.errors, family_z);
-    if (!consistent) failures += row.quantity + ": " + consistent.message() + "\n";
-    if (row.bound_rmse && !(row.errors.rmse() <= kLargestRatio * *row.bound_rmse)) {
-      failures += fmt::format("{}: RMSE {} of the bound\n", row.quantity,
-                              row.errors.rmse() / *row.bound_rmse);
-    }
+    failures += Failures(row, {kLowest, kHighest, kLargestRatio}, family_z);
+  }
+  if (rows_.empty()) failures = "nothing was measured\n";
+  return failures.empty() ? ::testing::AssertionSuccess()
+                          : ::testing::AssertionFailure() << failures;
+}
+
+::testing::AssertionResult CoverageTable::IsPlausible(double family_z) const {
+  std::string failures;
+  for (const Row& row : rows_) {
+    const int n = row.errors.samples();
+    if (n == 0) failures += row.quantity + ": nothing was measured\n";
+    const double spread = family_z * std::sqrt(kShare * (1 - kShare) / n);
+    // The RMSE of components that are fully correlated is as uncertain as that of one.
+    failures += Failures(row, {kShare - spread, kShare + spread, 1 + family_z / std::sqrt(2.0 * n)},
+                         family_z);
   }
   if (rows_.empty()) failures = "nothing was measured\n";
   return failures.empty() ? ::testing::AssertionSuccess()

@@ -29,8 +29,15 @@ class CoverageTable {
   /// component's 95 % interval holds the truth in 95 ± 2 %, the NEES is consistent, and the RMSE is
   /// at most 1.05 times the bound where one is stated.
   [[nodiscard]] ::testing::AssertionResult Holds(int repetitions, double family_z) const;
+  /// Checks the same as far as few repetitions can tell: shares to `family_z` of the binomial's
+  /// spread, the RMSE to that of χ².
+  [[nodiscard]] ::testing::AssertionResult IsPlausible(double family_z) const;
 
  private:
+  /// What shares and RMSE may be.
+  struct Limits {
+    double lowest, highest, ratio;
+  };
   struct Row {
     std::string quantity;
     ErrorStatistics errors;
@@ -38,6 +45,7 @@ class CoverageTable {
     std::optional<double> bound_rmse;
   };
   Row& Find(const std::string& quantity);
+  static std::string Failures(const Row& row, const Limits& limits, double family_z);
   std::vector<Row> rows_;
 };
 

@@ -50,14 +50,18 @@ void ScoreCenter(const SpinCenter& center, const Truth& truth, bool one_axis,
   sigma_mm = std::sqrt(covariance.trace());
 }
 
-void ScoreAxis(const OneAxis& axis, const Truth& truth, MotionScore& score) {
+void ScoreAxis(const MeanAxis& mean, const Truth& truth, MotionScore& score) {
+  const OneAxis& axis = mean.axis;
+  const AxisCommonPart common = mean.common.value_or(AxisCommonPart{});
   const TrueAxis true_axis = AxisOf(truth);
   const auto world = Across(true_axis.in_world);
   const auto body = Across(true_axis.in_body);
-  score.axis_in_world.Add(world.transpose() * (axis.in_world - true_axis.in_world),
-                          world.transpose() * axis.covariance_in_world * world);
-  score.axis_in_body.Add(body.transpose() * (axis.in_body - true_axis.in_body),
-                         body.transpose() * axis.covariance_in_body * body);
+  score.axis_in_world.Add(
+      world.transpose() * (axis.in_world - true_axis.in_world),
+      world.transpose() * (axis.covariance_in_world + common.covariance_in_world) * world);
+  score.axis_in_body.Add(
+      body.transpose() * (axis.in_body - true_axis.in_body),
+      body.transpose() * (axis.covariance_in_body + common.covariance_in_body) * body);
 }
 
 void ScoreVelocity(const MotionSample& sample, const TrueFrame& truth, ErrorStatistics& omega,
@@ -103,7 +107,7 @@ MotionScore ScoreMotion(const MotionAnalysis& given, const MotionAnalysis& chose
     ScoreCenter(*chosen.spin.center, truth, one_axis, score.center_chosen, score.chosen_error_mm,
                 score.chosen_sigma_mm);
   }
-  if (one_axis && given.axis) ScoreAxis(given.axis->axis, truth, score);
+  if (one_axis && given.axis) ScoreAxis(*given.axis, truth, score);
   const std::size_t last = given.samples.size() - 1;
   const std::size_t frames[] = {0, last / 2, last};
   for (std::size_t i = 0; i < 3; ++i) {

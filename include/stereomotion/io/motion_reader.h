@@ -31,9 +31,9 @@ struct MotionFiles {
 };
 
 /// Reads what the analysis of motion needs, without images. A body of a single rod: coordinates
-/// count from its first ball, as its poses do. Of recordings with more than `max_joint_frames`
-/// poses only those that the joint fit takes (`JointFitStride`), and the first `kOffsetFrames`, get
-/// their image points. Throws `UserError`.
+/// count from its first ball, as its poses do. Of recordings with more than
+/// `kMostFramesWithPoints` poses only those that the joint fit of `max_joint_frames` takes
+/// (`JointFitStride`), and the first `kOffsetFrames`, get their image points. Throws `UserError`.
 MotionData ReadMotionData(const MotionFiles& files, std::size_t max_joint_frames = 20000);
 
 /// The same of a RUN (or RUN/<body>).

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,10 @@ namespace stereomotion {
 
 /// Spells where a motion sample comes from: ok, filled, gap.
 std::string_view StatusWord(MotionStatus status);
+
+/// Finds the frame nearest to the middle of a series, which must not be empty: motion.json tells of
+/// it where the spin centre is.
+std::size_t MiddleFrame(const PoseSeries& series);
 
 /// Spell the results as docs/formats.md lays them out: ten significant digits whatever the locale;
 /// what is not determined is an empty cell or null.

@@ -15,6 +15,7 @@ namespace stereomotion {
 struct RunOrigin {
   std::string left_camera, right_camera;  ///< names in the rig
   std::vector<RunInput> inputs;
+  std::vector<std::string> body_folders;  ///< within RUN, of several bodies; empty: one, in RUN
 
   /// Finds an input by its role (rig, body, …); nullptr: not named.
   [[nodiscard]] const RunInput* Input(const std::string& role) const;
@@ -23,6 +24,9 @@ struct RunOrigin {
 /// Reads run.json of a finished or interrupted RUN. Throws `UserError` with file, line or key, what
 /// was found and what was expected.
 RunOrigin ReadRunOrigin(const std::filesystem::path& run);
+
+/// Finds the RUN that a folder belongs to: the folder itself, or for RUN/<body> the one above.
+std::filesystem::path RootOfRun(const std::filesystem::path& folder);
 
 /// Holds the blobs that were found in one frame pair.
 struct RunDetections {

@@ -24,6 +24,7 @@ struct RunReport {
   const RigCamera& left;
   const RigCamera& right;
   const std::vector<CameraMask>& masks;
+  std::vector<std::string> joints{};  ///< what was found of every two bodies, for a person
 };
 
 /// Writes out report.html: verdict, warnings, the run in numbers, and of every body its motion,

@@ -33,13 +33,13 @@ struct MotionSample {
 
 /// Holds the whole recording's answer for one body.
 struct MotionAnalysis {
-  PoseSeries
-      series;  ///< as analysed: moved to the left images' time where the offset is significant
+  PoseSeries series;  ///< as analysed: at the left images' time where the offset is applied
   SpinCenterResult spin;
   std::optional<MeanAxis> axis;
   std::vector<ScrewAxis> screws;
   std::vector<MotionSample> samples;  ///< one a frame
   std::optional<TimeOffset> time_offset;
+  bool time_offset_applied = false;  ///< significant, and every pose has its image points
   double mean_rate_rad_s = 0;  ///< way of the rotation over time
   double total_rad = 0;        ///< way of the rotation, ∫ |ω| dt: back and forth adds up
   std::vector<std::string> warnings;
@@ -51,6 +51,10 @@ MotionAnalysis AnalyseMotion(const MotionData& data, const AnalyseOptions& optio
 
 /// So many frames in a row, the first ones, tell the time offset of a recording that is thinned.
 inline constexpr std::size_t kOffsetFrames = 2000;
+
+/// Of longer recordings image points are kept only where the joint fit and the time offset use
+/// them (about 3 kB a frame with twenty balls); a time offset can then not be corrected.
+inline constexpr std::size_t kMostFramesWithPoints = 100000;
 
 /// Tells which measured frames the joint fit of a long recording takes: every n-th.
 std::size_t JointFitStride(std::size_t measured, std::size_t max_joint_frames);

@@ -9,7 +9,7 @@
 namespace stereomotion {
 
 enum class StructureFailure {
-  kTooFewBalls,  ///< fewer than three, all on one line, or one seen in too few frames
+  kTooFewBalls,  ///< fewer than three, or one seen in too few frames
   kNoConvergence,
 };
 
@@ -23,7 +23,7 @@ struct StructureOptions {
 struct Structure {
   std::vector<Eigen::Vector3d> balls_in_body_mm;
   /// Random covariance (3M×3M) in the stated gauge: origin at the balls' mean, axes fixed by no net
-  /// rotation of the balls against the start values (rank 3M − 6).
+  /// rotation of the balls against the start values (rank 3M − 6; of a straight rod M − 1).
   Eigen::MatrixXd covariance_mm2;
   /// Common part, from the rig's covariance; empty: the rig has none.
   Eigen::MatrixXd calibration_covariance_mm2;
@@ -41,7 +41,9 @@ struct Structure {
 /// scale is the rig's; the origin and the axes are free and are fixed afterwards by two
 /// constraints: Σ xᵢ = 0 and Σ x⁰ᵢ × xᵢ = 0 (x⁰: start values less their mean). The covariance is
 /// that of the undamped least squares on the constraints, the poses eliminated by orthogonal
-/// transformations (square-root form of the Schur complement). Poses start from the data; frames
+/// transformations (square-root form of the Schur complement). Balls that start on one line are a
+/// straight rod: they stay on it, its direction in the body and the open roll of the poses stay as
+/// they are. Poses start from the data; frames
 /// without one, or whose points leave it open, take no part. Throws std::invalid_argument for data
 /// that breaks its own rules.
 Expected<Structure, StructureFailure> RefineStructure(const MotionData& data,

@@ -44,6 +44,16 @@ enum class AxisMotion {
   kHinge,  ///< one screw without pitch
 };
 
+/// Holds what rig and body, the same in all frames, do to a mean axis (first order).
+struct AxisCommonPart {
+  Eigen::Matrix3d covariance_in_world = Eigen::Matrix3d::Zero();  ///< of `axis.in_world` [rad²]
+  Eigen::Matrix3d covariance_in_body = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d point_covariance_mm2 = Eigen::Matrix3d::Zero();
+  double ucal_direction_rad = 0;  ///< of `axis.in_world`, largest
+  /// Of a pure screw only: how rig and body move an instantaneous axis is not worked out.
+  std::optional<double> ucal_point_mm, ucal_pitch;
+};
+
 /// Holds the axis of a whole run.
 struct MeanAxis {
   OneAxis axis;
@@ -64,6 +74,7 @@ struct MeanAxis {
   double u_pitch = 0;                    ///< [mm/rad]
   double chi2 = 0;                       ///< of the screw, over all poses
   int dof = 0;
+  std::optional<AxisCommonPart> common;  ///< never added to the random part
 };
 
 /// Finds the mean axis of a run: direction by `FitOneAxis`; place and pitch from all poses by
@@ -75,5 +86,13 @@ struct MeanAxis {
 Expected<MeanAxis, AxisFailure> FindMeanAxis(const PoseSeries& series,
                                              const Eigen::Vector3d& near_in_body_mm,
                                              AxisMotion known = AxisMotion::kAny);
+
+/// Adds the common part to a mean axis: the screw is fitted again to poses (up to some sixty of the
+/// run) moved by one standard uncertainty along every principal component of the rig's and the
+/// known structure's covariance; of poses without points by their `calibration_u`, taken as one
+/// error in all frames. Adds nothing where the data states no common uncertainty, or `series` is
+/// not that of the data's frames.
+void AddCommonPart(const MotionData& data, const PoseSeries& series,
+                   const Eigen::Vector3d& near_in_body_mm, MeanAxis& mean);
 
 }  // namespace stereomotion

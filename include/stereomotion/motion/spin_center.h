@@ -53,10 +53,14 @@ struct LawFit {
   double bic = 0;                    ///< Schwarz 1978, χ² + parameters · ln(observations)
   bool adequate = false;             ///< not refuted (F test against poses that follow no law)
   std::optional<SpinCenter> center;  ///< none where the law leaves it undetermined
+  /// Share of the law where no law is known for sure (Akaike's weight; Burnham & Anderson 2002,
+  /// sec. 2.9); 0 of a refuted law and of free.
+  double weight = 0;
 };
 
 struct SpinCenterOptions {
-  std::optional<PathLaw> law;  ///< given by the user; else chosen by evidence
+  std::optional<PathLaw> law;   ///< given by the user; else chosen by evidence
+  bool only_given_law = false;  ///< fit no law beside `law` (and free poses): no evidence, but fast
   /// With law free: power spectral density of the path's acceleration [mm²/s³] (white noise); then
   /// a centre is given, conditional on it.
   std::optional<double> path_psd_mm2_s3;
@@ -70,6 +74,12 @@ struct SpinCenterResult {
   bool evidence_open = false;        ///< a narrower law explains the data about as well
   std::vector<LawFit> laws;          ///< fixed, uniform, accelerated, free
   std::optional<SpinCenter> center;  ///< by `law`; none where it is free or nothing is determined
+  /// A cubic path explains the data much better than any law: the path is free.
+  bool bends_otherwise = false;
+  /// Of `center`, when the law is not known for sure: Σ w (C + d dᵀ) over all laws with their
+  /// weights, d the way to their centre. None with the law given, and where a law that is likely
+  /// enough (weight above 5 %) leaves the centre undetermined.
+  std::optional<Eigen::Matrix3d> covariance_law_unknown_mm2;
   double range_of_rotation_rad = 0;  ///< largest angle between two poses
   std::vector<int> left_out;         ///< frames (indices) that contradict the law
   /// For a person, in words: "range of rotation 6.1°: centre known to ± 0.3 mm across the axis and
@@ -88,9 +98,16 @@ struct SpinCenterResult {
 /// G), so they stay true where the range of rotation is only a few times the noise. Directions that
 /// the motion leaves open are left out and named. Of one rod, whose roll nobody measures, the
 /// centre is sought on the rod's own line. All laws are weighed on the same frames: `left_out` are
-/// those that contradict the widest law in question. With `path_psd_mm2_s3` the states'
-/// acceleration has infinite variance. Throws std::invalid_argument for data that breaks its own
-/// rules (indices, times, covariances).
+/// those that contradict the widest law in question. A cubic path is weighed beside the laws: where
+/// it wins strongly the path is free, for the widest law takes the form of much that follows none.
+/// With `path_psd_mm2_s3` the states' acceleration has infinite variance. Throws
+/// std::invalid_argument for data that breaks its own rules (indices, times, covariances; unknown
+/// balls on one line), and for `only_given_law` without a law.
 SpinCenterResult FindSpinCenter(const MotionData& data, const SpinCenterOptions& options = {});
+
+/// Averages the covariance of the centre's place in the world at one frame over the laws, as
+/// `covariance_law_unknown_mm2` does in the body.
+std::optional<Eigen::Matrix3d> PositionCovarianceLawUnknown(const SpinCenterResult& result,
+                                                            std::size_t frame);
 
 }  // namespace stereomotion

@@ -26,7 +26,7 @@ struct BodyVelocity {
   Eigen::Matrix<double, 12, 12> covariance = Eigen::Matrix<double, 12, 12>::Zero();
   bool has_acceleration = false;
   int window = 0;  ///< poses used
-  int degree = 0;  ///< of the polynomial: 1, 2 or 4
+  int degree = 0;  ///< of the polynomial: 1, 2, 4 or 6
   /// Rods alone in the window: unit vector about which the body's turning is not seen. There ω and
   /// α are given as zero and their variance is infinite (zero is written).
   std::optional<Eigen::Vector3d> open_axis_in_world;

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -41,14 +42,18 @@ struct LearnedBodies {
 ///
 /// Body frame: origin at the balls' centroid, axes as the world's in the first pair with a pose
 /// (from the first round, so to its noise). The covariance is random and common part (rig)
-/// together, in that gauge: rank 3M − 6. Balls that rest are the background's; where nothing moves,
+/// together, in that gauge: rank 3M − 6. A rod of five that is alone (free roll) is learned as
+/// straight, rank M − 1. Balls that rest are the background's; where nothing moves,
 /// what rests is taken for a body if it has a rod of five, with a warning. Balls on no rod are left
-/// out, with a warning. A body of one rod only is not learned: its roll is open. The cameras must
-/// be synchronous: a lag bends the body; it is warned of where it is evident. `setup.bodies` is not
-/// read. Throws std::invalid_argument for cameras that the rig does not have.
+/// out, with a warning. A significant lag
+/// of the right camera is estimated with the body and taken off, with a warning. `setup.bodies` is
+/// not read. `each_pair` is called after each pair of either round: twice a pair where bodies are
+/// found. The result does not depend on the number of threads. Throws std::invalid_argument for
+/// cameras that the rig does not have.
 Expected<LearnedBodies, LearnBodyFailure> LearnBodies(const PairSource& source,
                                                       const MeasureSetup& setup,
                                                       const LearnBodyOptions& options,
-                                                      const std::atomic<bool>* stop = nullptr);
+                                                      const std::atomic<bool>* stop = nullptr,
+                                                      const std::function<void()>& each_pair = {});
 
 }  // namespace stereomotion
