@@ -38,6 +38,34 @@ std::vector<std::size_t> Anchors(std::size_t first, std::size_t last, std::size_
   return anchors;
 }
 
+/// Second moments of a Taylor coefficient. They tell its size alone, for at another place of the
+/// neighbourhood it points another way: the same in all directions, turn and place apart.
+Matrix6d MomentOf(const Vector6d& coefficient) {
+  Vector6d squares;
+  squares << Eigen::Vector3d::Constant(coefficient.head<3>().squaredNorm()),
+      Eigen::Vector3d::Constant(coefficient.tail<3>().squaredNorm());
+  return squares.asDiagonal();
+}
+
+/// Moments of order k + 2 by those of order k, where a motion swings or circles at `rate`.
+Matrix6d TwoOrdersOn(const Matrix6d& moment, int order, double rate) {
+  const double ratio = rate * rate / ((order + 1) * (order + 2));
+  return ratio * ratio * moment;
+}
+
+/// Foretells orders that no pilot fits: they fall as those below, k! |c_k| being geometric.
+void Extrapolate(std::vector<Matrix6d>& moments) {
+  for (int k = kHighestDegree + 1; k <= kHighestDegree + 2; ++k) {
+    const double factorials = (k - 2.0) * (k - 3) / (k * (k - 1.0));
+    for (const int block : {0, 3}) {
+      const double below = moments[k - 2](block, block), lowest = moments[k - 4](block, block);
+      if (lowest <= 0) continue;
+      const double moment = factorials * factorials * below * below / lowest;
+      moments[k].diagonal().segment<3>(block).setConstant(moment);
+    }
+  }
+}
+
 WindowMoments Window(const PoseStretch& stretch, std::size_t at, int half) {
   WindowMoments window(stretch, stretch.times_s[at], stretch.poses[at]);
   const std::size_t last = stretch.poses.size() - 1;
@@ -80,7 +108,14 @@ void PathRoughness::AddPilots(const PoseStretch& stretch, int degree, int widest
       Anchor anchor{at, {}, Chi2Of(fit, window), fit.dof};
       for (int k = 0; k <= fit.degree; ++k) {
         const Vector6d c = fit.coefficients.segment<6>(6 * k);
-        anchor.moments.emplace_back(c * c.transpose());
+        anchor.moments.push_back(MomentOf(c));
+      }
+      // Cut short by its turn, a window does not tell the higher orders. A point of a body that
+      // turns at ω circles at ω.
+      const double rate = fit.degree > 0 ? fit.coefficients.segment<3>(6).norm() : 0;
+      for (int k = fit.degree + 1; k <= degree; ++k) {
+        anchor.moments.push_back(k < 3 ? Matrix6d::Zero().eval()
+                                       : TwoOrdersOn(anchor.moments[k - 2], k - 2, rate));
       }
       pilot.anchors.push_back(std::move(anchor));
     }
@@ -89,7 +124,8 @@ void PathRoughness::AddPilots(const PoseStretch& stretch, int degree, int widest
 }
 
 PathRoughness::Pooled PathRoughness::PoolNear(const Pilot& pilot, std::size_t i) const {
-  Pooled pooled{std::vector<Matrix6d>(kHighestDegree + kBiasOrders + 1, Matrix6d::Zero()), false};
+  Pooled pooled;
+  pooled.moments.assign(kHighestDegree + kBiasOrders + 1, Matrix6d::Zero());
   const auto reach = static_cast<std::size_t>(kNeighbourhood * pilot.half_window);
   double chi2 = 0;
   int dof = 0, used = 0;
@@ -103,6 +139,7 @@ PathRoughness::Pooled PathRoughness::PoolNear(const Pilot& pilot, std::size_t i)
   for (Matrix6d& moment : pooled.moments) moment /= std::max(used, 1);
   // Overlapping windows repeat each other: as many independent degrees of freedom as there are.
   const double share = used > kOverlap ? 1.0 / kOverlap : 1.0 / std::max(used, 1);
+  pooled.misfit = chi2 / std::max(dof, 1);
   pooled.adequate =
       used > 0 && chi2 * share <= noise_scale_ * LargestChi2(std::max(1.0, dof * share));
   return pooled;
@@ -113,6 +150,7 @@ int PathRoughness::Widest(const std::vector<Pilot>& pilots, std::size_t i, PathB
   for (const Pilot& pilot : pilots) {
     const Pooled pooled = PoolNear(pilot, i);
     if (reach > 0 && !pooled.adequate) break;
+    if (!pooled.adequate && pilot.degree == kSextic) bend.misfit = std::max(1.0, pooled.misfit);
     reach = pilot.half_window;
     // A pilot of higher degree adds only the orders that the lower one does not tell.
     for (int k = pilot.degree == kSextic ? kQuartic + 1 : 0; k <= pilot.degree; ++k) {
@@ -127,6 +165,7 @@ PathBend PathRoughness::Near(std::size_t i) const {
   bend.moments.assign(kHighestDegree + kBiasOrders + 1, Matrix6d::Zero());
   bend.quartic_reach = Widest(quartics_, i, bend);
   bend.sextic_reach = Widest(sextics_, i, bend);
+  Extrapolate(bend.moments);
   return bend;
 }
 

@@ -13,6 +13,8 @@ struct PathBend {
   std::vector<Matrix6d> moments;  ///< by order; of orders that no pilot tells: zero
   int quartic_reach = 0;          ///< half window [poses] in which a polynomial of degree 4 holds
   int sextic_reach = 0;           ///< likewise of degree 6
+  /// Of the noise's variance: above one where not even the least window of degree 6 holds.
+  double misfit = 1;
 };
 
 /// Learns the bends of a stretch from pilot fits of degree 4 and 6. Of every place the widest pilot
@@ -36,6 +38,7 @@ class PathRoughness {
   };
   struct Pooled {
     std::vector<Matrix6d> moments;
+    double misfit = 0;  ///< χ² per degree of freedom
     bool adequate = false;
   };
 

@@ -13,16 +13,18 @@ namespace {
 
 using Matrix12 = Eigen::Matrix<double, 12, 12>;
 
-/// Squared bias that a window may have, of the variance, in the direction where it is worst. It is
-/// foretold as a mean over a neighbourhood (and included in the covariance); at the crest of a
-/// swing it is twice that: then 95 % intervals still cover 94 %.
-constexpr double kBiasShare = 0.05;
+/// The squared bias is foretold as a mean over a neighbourhood. At the crest of a swing it is twice
+/// the mean, and a mean of few windows is uncertain by half: so much is included in the covariance.
+constexpr double kCrest = 3;
+/// Squared bias (so enlarged) that a window may have, of the variance, in the direction where it is
+/// worst. Being in the covariance it costs no coverage while it is foretold within a factor of two.
+constexpr double kBiasShare = 0.5;
 /// Degree 2 serves ω and v as degree 1, but α and a too; degree 4 lets the window grow where the
 /// rate itself bends. Odd degrees have no less bias in a symmetrical window than the even one
 /// below. Degree 6 is for motion so fast that degree 4 bends away within its own five poses.
 constexpr int kDegrees[] = {1, 2, 4, 6};
-/// No pilot tells the bias of degree 6: its window keeps to this share of the reach that χ² allows,
-/// where the bias is 0.8^8 = a sixth of what χ² does not see; twice over where it is one-sided.
+/// The bias of degree 6 is extrapolated only: its window keeps to this share of the reach that χ²
+/// allows, where the bias is 0.8^8 = a sixth of what χ² does not see; twice over if one-sided.
 constexpr double kSexticShare = 0.8;
 constexpr int kHalfWindows[] = {1, 2, 3, 4, 5, 6, 8, 10, 13, 16, 20, 25, 32, 40, 50, 64, 80, 100};
 
@@ -75,11 +77,12 @@ Candidate Judge(const WindowMoments& window, int degree, const PathBend& bend) {
   const Kinematics kinematics = KinematicsOf(fit, window.stretch.unit_s);
   const Eigen::Index told = std::min<Eigen::Index>(18, fit.coefficients.size());
   const Eigen::MatrixXd jacobian = kinematics.jacobian.leftCols(told);
-  const Matrix12 noise = jacobian * fit.covariance.topLeftCorner(told, told) * jacobian.transpose();
+  const Matrix12 noise =
+      bend.misfit * jacobian * fit.covariance.topLeftCorner(told, told) * jacobian.transpose();
   Matrix12 bias = Matrix12::Zero();
   for (int k = 0; k < kBiasOrders; ++k) {
     const Eigen::MatrixXd gain = jacobian * fit.bias_gains[k].topRows(told);
-    bias += gain * bend.moments[degree + 1 + k] * gain.transpose();
+    bias += kCrest * gain * bend.moments[degree + 1 + k] * gain.transpose();
   }
   Candidate candidate;
   BodyVelocity& velocity = candidate.velocity;
@@ -108,11 +111,11 @@ bool Better(const Candidate& a, const Candidate& b) {
 }
 
 /// Most poses in a window of a degree: as many as a symmetrical one of the pilots' reach has, also
-/// where the window is one-sided.
-int ReachOf(int degree, const PathBend& bend, bool one_sided) {
+/// where the window is one-sided. About a gap (where it is even) it must hold the degree too.
+int ReachOf(int degree, const PathBend& bend, bool one_sided, bool measured) {
   int half = degree <= 2 ? bend.quartic_reach : bend.sextic_reach;
   if (degree > 4) half = static_cast<int>(kSexticShare * (one_sided ? kSexticShare : 1) * half);
-  return 2 * std::max(half, std::max(degree / 2, 1)) + 1;
+  return 2 * std::max(half, std::max(degree / 2, 1)) + (measured ? 1 : 2);
 }
 
 /// Pose at a time inside a stretch: measured, or interpolated where a gap is filled.
@@ -147,8 +150,8 @@ BodyVelocity VelocityAt(const PoseStretch& stretch, const PathRoughness& roughne
     }
     const bool one_sided = high - after != after - low + (measured ? 1 : 0);
     for (const int degree : kDegrees) {
-      if (window.poses <= degree || (best && window.poses > ReachOf(degree, bend, one_sided)))
-        continue;
+      const int reach = ReachOf(degree, bend, one_sided, measured);
+      if (window.poses <= degree || (best && window.poses > reach)) continue;
       const Candidate candidate = Judge(window, degree, bend);
       if (!best || Better(candidate, *best)) best = candidate;
     }
