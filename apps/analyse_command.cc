@@ -11,6 +11,7 @@
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/output_error.h"
 #include "stereomotion/io/run_analysis.h"
+#include "stereomotion/io/write_file.h"
 
 namespace stereomotion::app {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // An analysis of a RUN replaces its own files there; anywhere else nothing is overwritten unasked.
-void PrepareFolders(const AnalyseArguments& arguments, const AnalyseInputs& inputs) {
+void CheckFolders(const AnalyseArguments& arguments, const AnalyseInputs& inputs) {
   const bool own = inputs.is_run && arguments.output.empty();
   for (const AnalyseBody& body : inputs.bodies) {
     std::error_code error;
@@ -30,8 +31,23 @@ void PrepareFolders(const AnalyseArguments& arguments, const AnalyseInputs& inpu
                       ": holds an analysis already; give --force to replace it, or another "
                       "--output");
     }
+  }
+}
+
+// All files or none; only then go the results of an earlier analysis that this one did not make.
+void WriteResults(const AnalyseArguments& arguments, const AnalyseInputs& inputs,
+                  const std::vector<TextFile>& files) {
+  const std::vector<fs::path> stale = StaleResults(arguments, inputs, files);
+  std::error_code error;
+  for (const AnalyseBody& body : inputs.bodies) {
     fs::create_directories(body.folder, error);
     if (error) throw OutputError(body.folder.string() + ": " + error.message());
+  }
+  WriteFilesAtomically(files);
+  for (const fs::path& file : stale) {
+    if (!fs::remove(file, error) && error) {
+      throw OutputError(file.string() + ": cannot be removed: " + error.message());
+    }
   }
 }
 
@@ -42,42 +58,63 @@ bool HasAnswer(const std::vector<BodyMotion>& bodies) {
   return false;
 }
 
-// Motion of every body, written and told as it comes. Returns the filter with all its numbers.
-std::string AnalyseBodies(const AnalyseArguments& arguments, const AnalyseInputs& inputs,
-                          const AnalyseOptions& options, bool quiet,
-                          std::vector<BodyMotion>& bodies) {
-  std::string filter;
+// Holds all that an analysis gives, before anything is written.
+struct Results {
+  std::vector<BodyMotion> bodies;
+  std::vector<TextFile> files;
+  std::string filter;  ///< with all its numbers; empty: none
+  std::string joints;  ///< for a person
+};
+
+// All that can refuse an option happens here.
+Results Analyse(const AnalyseArguments& arguments, const AnalyseInputs& inputs,
+                const AnalyseOptions& options) {
+  Results results;
   for (const AnalyseBody& body : inputs.bodies) {
-    bodies.push_back({body.name, AnalyseMotion(body.data, options)});
-    const MotionAnalysis& analysis = bodies.back().analysis;
-    WriteMotion(body.folder, analysis);
-    if (!arguments.filter.empty()) filter = WriteFiltered(arguments, body.folder, analysis);
-    if (!quiet) {
-      if (inputs.bodies.size() > 1) fmt::print("{}\n", body.name);
-      fmt::print("{}", MotionSummary(analysis));
+    results.bodies.push_back({body.name, AnalyseMotion(body.data, options)});
+    const MotionAnalysis& analysis = results.bodies.back().analysis;
+    for (TextFile& file : MotionTexts(body.folder, analysis)) {
+      results.files.push_back(std::move(file));
     }
-    for (const std::string& warning : analysis.warnings) spdlog::warn(warning);
+    if (!arguments.filter.empty()) {
+      results.filter = AddFiltered(arguments, body.folder, analysis, results.files);
+    }
   }
-  return filter;
+  AddRelative(arguments, inputs, results.bodies, results.files);
+  AddJointAngles(arguments, inputs.folder, results.bodies, results.files);
+  JointTexts joints = FindJoints(inputs.folder, results.bodies);
+  results.joints = std::move(joints.summary);
+  for (TextFile& file : joints.files) results.files.push_back(std::move(file));
+  return results;
+}
+
+void Tell(const Results& results, bool quiet) {
+  for (const BodyMotion& body : results.bodies) {
+    if (!quiet && results.bodies.size() > 1) fmt::print("{}\n", body.name);
+    if (!quiet) fmt::print("{}", MotionSummary(body.analysis));
+    for (const std::string& warning : body.analysis.warnings) spdlog::warn(warning);
+  }
+  if (!quiet) fmt::print("{}", results.joints);
+  if (!quiet && !results.filter.empty()) fmt::print("  {:<26}{}\n", "filter", results.filter);
 }
 
 int RunAnalyse(const AnalyseArguments& arguments, const CommonOptions& common) {
   const AnalyseOptions options = MakeAnalyseOptions(arguments);
   const AnalyseInputs inputs = LoadAnalyseInputs(arguments, options);
   for (const std::string& warning : inputs.warnings) spdlog::warn(warning);
-  PrepareFolders(arguments, inputs);
-  std::vector<BodyMotion> bodies;
-  const std::string filter = AnalyseBodies(arguments, inputs, options, common.quiet, bodies);
-  WriteRelative(arguments, inputs, bodies);
-  const std::string joints = RunJoints(inputs.folder, bodies);
-  WriteJointAngles(arguments, inputs.folder, bodies);
-  if (inputs.is_run && arguments.output.empty()) {
-    NoteAnalysis(inputs.folder, common.command_line, filter);
+  if (!inputs.no_answer.empty()) {
+    fmt::print(stderr, "stereomotion: {}\n", inputs.no_answer);
+    return kNoAnswer;
   }
-  if (!common.quiet) fmt::print("{}", joints);
-  if (!common.quiet && !filter.empty()) fmt::print("  {:<26}{}\n", "filter", filter);
+  CheckFolders(arguments, inputs);
+  const Results results = Analyse(arguments, inputs, options);
+  WriteResults(arguments, inputs, results.files);
+  if (inputs.is_run && arguments.output.empty()) {
+    NoteAnalysis(inputs.folder, common.command_line, results.filter);
+  }
+  Tell(results, common.quiet);
   fmt::print("{}\n", inputs.folder.string());
-  return HasAnswer(bodies) ? kDone : kNoAnswer;
+  return HasAnswer(results.bodies) ? kDone : kNoAnswer;
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ struct AnalyseInputs {
   std::filesystem::path folder;  ///< for what concerns all bodies
   std::vector<AnalyseBody> bodies;
   std::vector<std::string> warnings;
+  std::string no_answer;  ///< why the markers give no motion; empty: they may
 };
 
 /// Reads RUN (with one or several bodies), poses or markers. Throws `UserError`.

@@ -48,9 +48,16 @@ void CheckJoint(const AnalyseArguments& arguments) {
                               fmt::join(known, ", "), DidYouMean(arguments.joint, known)));
 }
 
+// An option that would change nothing is a mistake.
+void CheckFilter(const AnalyseArguments& arguments) {
+  if (!arguments.butterworth_told || arguments.filter == "butterworth") return;
+  throw UserError("--cutoff-hz, --order: need --filter butterworth beside them");
+}
+
 void AddMethodOptions(CLI::App& analyse, AnalyseArguments& arguments) {
   constexpr double kSmallest = 1e-9, kLargest = 1e12;
   constexpr int kHighestOrder = 20;
+  const auto told = [&arguments](const std::string&) { arguments.butterworth_told = true; };
   analyse
       .add_option("--law", arguments.law,
                   "How the spin centre moves, if you know it; else the evidence chooses")
@@ -64,9 +71,11 @@ void AddMethodOptions(CLI::App& analyse, AnalyseArguments& arguments) {
   analyse
       .add_option("--cutoff-hz", arguments.cutoff_hz, "Butterworth: -3 dB of both passes together")
       ->check(NumberWithin(kSmallest, kLargest))
+      ->each(told)
       ->capture_default_str();
   analyse.add_option("--order", arguments.order, "Butterworth: of both passes together, even")
       ->check(WholeNumberWithin(2, kHighestOrder))
+      ->each(told)
       ->capture_default_str();
   analyse
       .add_option("--max-gap", arguments.max_gap_s,
@@ -85,13 +94,16 @@ void AddFrameOptions(CLI::App& analyse, AnalyseArguments& arguments) {
                   "Write angles.csv: Euler or Cardan angles by this sequence; zxy about the "
                   "turned axes, ZXY about the fixed ones")
       ->check(NotEmpty());
-  analyse
-      .add_option("--joint", arguments.joint,
-                  "Write joint_angles.csv of two bodies after the ISB: knee, hip, ankle, spine, "
-                  "shoulder, elbow, wrist; the proximal body is the first, or --relative-to")
-      ->check(NotEmpty());
+  CLI::Option* joint =
+      analyse
+          .add_option(
+              "--joint", arguments.joint,
+              "Write joint_angles.csv of two bodies after the ISB: knee, hip, ankle, spine, "
+              "shoulder, elbow, wrist; the proximal body is the first, or --relative-to")
+          ->check(NotEmpty());
   analyse.add_option("--side", arguments.side, "Side of the person, for --joint")
       ->check(CLI::IsMember({"right", "left"}))
+      ->needs(joint)
       ->capture_default_str();
 }
 
@@ -128,8 +140,10 @@ void AddAnalyseOptions(CLI::App& analyse, AnalyseArguments& arguments) {
   AddMethodOptions(analyse, arguments);
   AddFrameOptions(analyse, arguments);
   AddInputOptions(analyse, arguments);
-  analyse.add_option("--output", arguments.output,
-                     "Folder for the results; RUN itself, or NAME-motion, by default");
+  analyse
+      .add_option("--output", arguments.output,
+                  "Folder for the results; RUN itself, or NAME-motion, by default")
+      ->check(NotEmpty());
   analyse.add_flag("--force", arguments.force, "Replace an analysis that is there");
   analyse.footer(
       "Examples:\n"
@@ -147,6 +161,7 @@ AnalyseOptions MakeAnalyseOptions(const AnalyseArguments& arguments) {
     if (arguments.law != "free") throw UserError("--path-psd: needs --law free beside it");
     options.center.path_psd_mm2_s3 = arguments.path_psd_mm2_s3;
   }
+  CheckFilter(arguments);
   CheckAngles(arguments);
   CheckJoint(arguments);
   options.velocity.max_gap_s = arguments.max_gap_s;

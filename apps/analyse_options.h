@@ -18,6 +18,7 @@ struct AnalyseArguments {
   std::string filter;          ///< empty: none
   double cutoff_hz = 6;
   int order = 4;
+  bool butterworth_told = false;  ///< one of these two was given
   double max_gap_s = 0.1;
   std::string relative_to;  ///< frame number or body; empty: the world
   std::string angles;       ///< sequence; empty: none

@@ -18,8 +18,10 @@ namespace {
 
 constexpr const char* kOrGiveBody = "; or measure the body's rods and give --body";
 
-std::string ReasonText(LearnBodyFailure failure) {
+std::string ReasonText(LearnBodyFailure failure, std::int64_t pairs) {
   switch (failure) {
+    case LearnBodyFailure::kTooFewPairs:
+      return fmt::format("too few pairs: {}; at least {} are needed", pairs, kFewestPairsToLearn);
     case LearnBodyFailure::kTooFewBalls:
       return "fewer than four balls could be followed in 3D. Check light, focus and exposure, that "
              "--left and --right are not exchanged, and that the rig belongs to these cameras";
@@ -66,7 +68,7 @@ std::optional<int> LearnBodiesOf(const TrackOptions& options, TrackInputs& input
   progress.Clear();
   if (!learned) {
     const bool interrupted = learned.error() == LearnBodyFailure::kInterrupted;
-    return Refuse(ReasonText(learned.error()) + (interrupted ? "" : kOrGiveBody));
+    return Refuse(ReasonText(learned.error(), pairs) + (interrupted ? "" : kOrGiveBody));
   }
   for (const std::string& warning : learned->warnings) spdlog::warn(warning);
   inputs.warnings.insert(inputs.warnings.end(), learned->warnings.begin(), learned->warnings.end());

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 // still the same.
 fs::path OriginalInput(const fs::path& run, const std::string& role) {
   const fs::path copy = run / (role + ".yaml");
-  const fs::path root = fs::exists(run / "run.json") ? run : run / "..";
+  const fs::path root = fs::exists(run / "run.json") ? run : (run / "..").lexically_normal();
   const RunOrigin origin = ReadRunOrigin(root);
   const RunInput* input = origin.Input(role);
   std::error_code ignored;
@@ -48,17 +48,23 @@ MotionFiles FilesOf(const fs::path& run) {
 }
 
 std::string_view JointFailureText(JointFailure failure) {
-  return failure == JointFailure::kTooFewPoses
-             ? "fewer than three frames have a pose of both"
-             : "they do not turn against each other beyond the noise";
+  switch (failure) {
+    case JointFailure::kTooFewPoses:
+      return "fewer than three frames have a pose of both";
+    case JointFailure::kOneRod:
+      return "one of them is a single rod, whose turn about itself is not seen";
+    case JointFailure::kNoRelativeRotation:
+      return "they do not turn against each other beyond the noise";
+  }
+  return "";
 }
 
 }  // namespace
 
-void WriteMotion(const fs::path& folder, const MotionAnalysis& analysis) {
-  WriteFilesAtomically({{folder / "motion.csv", MotionCsv(analysis)},
-                        {folder / "motion.json", MotionJson(analysis)},
-                        {folder / "axes.csv", AxesCsv(analysis)}});
+std::vector<TextFile> MotionTexts(const fs::path& folder, const MotionAnalysis& analysis) {
+  return {{folder / "motion.csv", MotionCsv(analysis)},
+          {folder / "motion.json", MotionJson(analysis)},
+          {folder / "axes.csv", AxesCsv(analysis)}};
 }
 
 MotionData ReadRunMotion(const fs::path& run, std::size_t max_joint_frames) {
@@ -67,28 +73,33 @@ MotionData ReadRunMotion(const fs::path& run, std::size_t max_joint_frames) {
 
 MotionAnalysis RunMotion(const fs::path& run, const AnalyseOptions& options) {
   MotionAnalysis analysis = AnalyseMotion(ReadRunMotion(run, options.max_joint_frames), options);
-  WriteMotion(run, analysis);
+  WriteFilesAtomically(MotionTexts(run, analysis));
   return analysis;
 }
 
-std::string RunJoints(const fs::path& folder, const std::vector<BodyMotion>& bodies) {
-  std::string text;
-  std::vector<TextFile> files;
+JointTexts FindJoints(const fs::path& folder, const std::vector<BodyMotion>& bodies) {
+  JointTexts texts;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
       const std::string &first = bodies[i].name, &second = bodies[j].name;
       const auto joint = FindJoint(bodies[i].analysis.series, bodies[j].analysis.series);
       const std::string label = fmt::format("joint of {} and {}:", first, second);
-      text += fmt::format("  {:<25} {}\n", label,
-                          joint ? joint->verdict : std::string(JointFailureText(joint.error())));
+      texts.summary +=
+          fmt::format("  {:<25} {}\n", label,
+                      joint ? joint->verdict : std::string(JointFailureText(joint.error())));
       if (!joint) continue;
       const std::string name =
           bodies.size() == 2 ? "joint.json" : fmt::format("joint-{}-{}.json", first, second);
-      files.push_back({folder / name, JointJson(*joint, first, second)});
+      texts.files.push_back({folder / name, JointJson(*joint, first, second)});
     }
   }
-  WriteFilesAtomically(files);
-  return text;
+  return texts;
+}
+
+std::string RunJoints(const fs::path& folder, const std::vector<BodyMotion>& bodies) {
+  const JointTexts joints = FindJoints(folder, bodies);
+  WriteFilesAtomically(joints.files);
+  return joints.summary;
 }
 
 }  // namespace stereomotion::app

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "stereomotion/io/write_file.h"
 #include "stereomotion/motion/analyse_motion.h"
 
 namespace stereomotion::app {
@@ -18,8 +19,9 @@ MotionAnalysis RunMotion(const std::filesystem::path& run, const AnalyseOptions&
 /// run.json names, if their check sums are still the same. Throws `UserError`.
 MotionData ReadRunMotion(const std::filesystem::path& run, std::size_t max_joint_frames);
 
-/// Writes motion.csv, motion.json and axes.csv of an analysis into a folder: all three or none.
-void WriteMotion(const std::filesystem::path& folder, const MotionAnalysis& analysis);
+/// Spells motion.csv, motion.json and axes.csv of an analysis, for `folder`; writes nothing.
+std::vector<TextFile> MotionTexts(const std::filesystem::path& folder,
+                                  const MotionAnalysis& analysis);
 
 /// Spells the outcome for a person, some lines; without the warnings, which go to the log.
 std::string MotionSummary(const MotionAnalysis& analysis);
@@ -29,6 +31,15 @@ struct BodyMotion {
   std::string name;
   MotionAnalysis analysis;
 };
+
+/// Holds what the joints of bodies say to a person, and their files, which are not written yet.
+struct JointTexts {
+  std::string summary;
+  std::vector<TextFile> files;
+};
+
+/// Does what `RunJoints` does, but writes nothing.
+JointTexts FindJoints(const std::filesystem::path& folder, const std::vector<BodyMotion>& bodies);
 
 /// Finds the joint of every two bodies from their common frames and writes joint.json (of more than
 /// two bodies: joint-A-B.json each) into `folder`. Returns the outcome for a person, also where two

@@ -49,8 +49,10 @@ std::string Evidence(const SpinCenterResult& spin) {
   std::string text;
   for (const LawFit& fit : spin.laws) {
     if (fit.law == spin.law) continue;
-    text += fmt::format("{}{} {:+.1f}{}", text.empty() ? "" : ", ", LawWord(fit.law),
-                        fit.bic - chosen, fit.adequate ? "" : " (refuted)");
+    const double worse = fit.bic - chosen;
+    const char* refuted = worse < 0 ? " (refuted by chi2)" : " (refuted)";
+    text += fmt::format("{}{} {:+.1f}{}", text.empty() ? "" : ", ", LawWord(fit.law), worse,
+                        fit.adequate ? "" : refuted);
   }
   return text.empty() ? "" : "BIC against it: " + text;
 }
@@ -63,6 +65,25 @@ std::string Law(const SpinCenterResult& spin) {
       fmt::format("{}: {}", LawWord(spin.law), kMeaning[static_cast<std::size_t>(spin.law)]);
   if (spin.law_given) return text + " (as asked for)";
   return text + (spin.evidence_open ? " (evidence open)" : " (by evidence)");
+}
+
+// A verdict, a line a statement: it breaks at semicolons outside brackets, and before a bracket
+// that holds a list.
+std::string VerdictLines(const std::string& verdict) {
+  std::string text, line;
+  int depth = 0;
+  for (const char c : verdict) {
+    const bool list = c == '(' && verdict.find("(by law:") != std::string::npos;
+    if (depth == 0 && (c == ';' || list)) {
+      while (!line.empty() && line.back() == ' ') line.pop_back();
+      text += Line(text.empty() ? "verdict" : "", line);
+      line.clear();
+    }
+    depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+    const bool separator = depth == 0 && (c == ';' || (c == ' ' && line.empty()));
+    if (!separator) line += c;
+  }
+  return text + Line(text.empty() ? "verdict" : "", line);
 }
 
 std::string CenterLines(const MotionAnalysis& analysis) {
@@ -85,7 +106,7 @@ std::string CenterLines(const MotionAnalysis& analysis) {
     text += Line("  its velocity, mm/s",
                  VectorWithSigma(state.velocity_mm_s, state.covariance.block<3, 3>(3, 3)));
   }
-  return text + Line("", spin.verdict);
+  return text + VerdictLines(spin.verdict);
 }
 
 std::string AxisLines(const MeanAxis& axis) {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "csv_row.h"
+#include "open_turn.h"
 #include "stereomotion/geometry/so3.h"
 #include "stereomotion/io/csv_rows.h"
 
@@ -27,12 +28,9 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 Eigen::Vector3d Uncertainty(const BodyVelocity& velocity, Block block) {
   Eigen::Vector3d u = velocity.covariance.diagonal().segment<3>(block).cwiseSqrt();
-  const bool turn = block == kOmega || block == kAlpha;
-  if (!turn || !velocity.open_axis_in_world) return u;
-  // A rod's turn about itself is not seen: infinite variance along it, though zero is written.
-  constexpr double kAcross = 1e-9;
+  if (block != kOmega && block != kAlpha) return u;
   for (int k = 0; k < 3; ++k) {
-    if (std::abs((*velocity.open_axis_in_world)[k]) > kAcross) u[k] = kUnknown;
+    if (IsTurnOpen(velocity, k)) u[k] = kUnknown;
   }
   return u;
 }

@@ -1,12 +1,15 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "line_plot.h"
+#include "open_turn.h"
 #include "report_text.h"
 #include "run_sections.h"
+#include "stereomotion/io/motion_writer.h"
 
 namespace stereomotion {
 namespace {
@@ -35,25 +38,25 @@ std::string Direction(const Eigen::Vector3d& axis) {
   return fmt::format("({:.4f}, {:.4f}, {:.4f})", axis.x(), axis.y(), axis.z());
 }
 
-void AddCenter(const SpinCenter& center, HtmlTable& table) {
+void AddCenter(const SpinCenter& center, const PoseSeries& series, HtmlTable& table) {
   const std::string across = center.free_axis_in_body ? ", across the free axis" : "";
   table.AddRow({"spin centre in the body [mm]" + across,
                 VectorText(center.in_body_mm, center.covariance_mm2)});
   if (center.free_axis_in_body) {
     table.AddRow({"free along, in the body", Direction(*center.free_axis_in_body)});
   }
-  if (center.states.empty()) return;
-  const CenterState& first = center.states.front();
+  if (series.empty() || center.states.size() != series.size()) return;
+  const CenterState& state = center.states[MiddleFrame(series)];
   const bool rests = center.law == PathLaw::kFixed;
-  table.AddRow({rests ? "… in the world [mm]" : "… in the world, first frame [mm]",
-                VectorText(first.position_mm, first.covariance.topLeftCorner<3, 3>())});
+  table.AddRow({rests ? "… in the world [mm]" : "… in the world, mid-run [mm]",
+                VectorText(state.position_mm, state.covariance.topLeftCorner<3, 3>())});
   if (!rests) {
-    table.AddRow({"its velocity, first frame [mm/s]",
-                  VectorText(first.velocity_mm_s, first.covariance.block<3, 3>(3, 3))});
+    table.AddRow({"its velocity, mid-run [mm/s]",
+                  VectorText(state.velocity_mm_s, state.covariance.block<3, 3>(3, 3))});
   }
-  if (first.calibration_u_mm) {
+  if (state.calibration_u_mm) {
     table.AddRow({"common to all frames (calibration, body) [mm]",
-                  Digits(first.calibration_u_mm->maxCoeff(), 2)});
+                  Digits(state.calibration_u_mm->maxCoeff(), 2)});
   }
 }
 
@@ -76,7 +79,7 @@ std::string Outcome(const MotionAnalysis& motion) {
   table.AddRow({"mean rate", Digits(kDegreesPerRadian * motion.mean_rate_rad_s, 4) + " °/s"});
   table.AddRow({"law of the centre's path",
                 std::string(LawWord(motion.spin.law)) + (motion.spin.law_given ? " (given)" : "")});
-  if (motion.spin.center) AddCenter(*motion.spin.center, table);
+  if (motion.spin.center) AddCenter(*motion.spin.center, motion.series, table);
   if (motion.axis) AddAxis(*motion.axis, table);
   if (motion.time_offset) {
     table.AddRow(
@@ -96,6 +99,24 @@ std::string Evidence(const SpinCenterResult& spin) {
   return spin.laws.empty() ? "" : "<h3>Evidence for the law</h3>\n" + table.Text();
 }
 
+/// Components of ω (row 0) or v (row 3) with their standard uncertainties; NaN: not determined.
+struct Components {
+  Eigen::Array3d values, sigmas;
+};
+
+Components ComponentsOf(const MotionSample& sample, Eigen::Index row) {
+  const BodyVelocity& at = sample.velocity;
+  Components known{row == 0 ? at.omega_rad_s : at.velocity_mm_s,
+                   at.covariance.diagonal().segment<3>(row).cwiseMax(0).cwiseSqrt()};
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const bool is_open = row == 0 && IsTurnOpen(at, k);
+    if (sample.status != MotionStatus::kGap && !is_open && std::isfinite(known.sigmas[k])) continue;
+    known.values[k] = kNone;
+    known.sigmas[k] = 0;
+  }
+  return known;
+}
+
 /// Draws three components of the velocities with their bands, from `row` of the covariance on.
 std::string VelocityPlot(const MotionAnalysis& motion, Eigen::Index row, const char* title,
                          const char* y_name, const std::string& caption) {
@@ -108,17 +129,23 @@ std::string VelocityPlot(const MotionAnalysis& motion, Eigen::Index row, const c
   const std::size_t count = std::min(motion.samples.size(), motion.series.size());
   const std::size_t step = 1 + count / kMostPoints;
   for (std::size_t i = 0; i < count; i += step) {
-    const BodyVelocity& at = motion.samples[i].velocity;
-    const Eigen::Vector3d& value = row == 0 ? at.omega_rad_s : at.velocity_mm_s;
-    const bool known = motion.samples[i].status != MotionStatus::kGap;
+    const Components known = ComponentsOf(motion.samples[i], row);
     plot.x.push_back(SecondsAfterFirst(motion.series, i));
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       PlotLine& line = plot.lines[static_cast<std::size_t>(axis)];
-      line.values.push_back(known ? value[axis] : kNone);
-      line.half_widths.push_back(known ? 2 * SigmaOf(at.covariance(row + axis, row + axis)) : 0);
+      line.values.push_back(known.values[axis]);
+      line.half_widths.push_back(2 * known.sigmas[axis]);
     }
   }
   return DrawLinePlot(plot);
+}
+
+/// Tells whether no component of the angular velocity is determined in any frame.
+bool TurnIsOpen(const MotionAnalysis& motion) {
+  return !motion.samples.empty() &&
+         std::all_of(motion.samples.begin(), motion.samples.end(), [](const MotionSample& sample) {
+           return ComponentsOf(sample, 0).values.isNaN().all();
+         });
 }
 
 bool RestsByLaw(const MotionAnalysis& motion) {
@@ -139,7 +166,6 @@ std::string RunMotionSection(const RunReport& report, std::size_t body) {
   if (!motion.spin.verdict.empty()) {
     text += "<p><b>" + EscapeHtml(Capitalized(motion.spin.verdict)) + "</b></p>\n";
   }
-  for (const auto& warning : motion.warnings) text += "<p>" + EscapeHtml(warning) + "</p>\n";
   constexpr const char* kBand =
       ": <b class=\"x\">x</b>, <b class=\"y\">y</b>, <b class=\"z\">z</b> in the world. Band: ± 2 "
       "σ "
@@ -148,8 +174,9 @@ std::string RunMotionSection(const RunReport& report, std::size_t body) {
                                       : "Velocity of the body's "
                                         "origin";
   return text + Outcome(motion) + Evidence(motion.spin) + "<div class=\"figures\">\n" +
-         VelocityPlot(motion, 0, "Angular velocity", "ω [rad/s]",
-                      std::string("Angular velocity") + kBand) +
+         (TurnIsOpen(motion) ? "<p>No component of the angular velocity is determined.</p>\n"
+                             : VelocityPlot(motion, 0, "Angular velocity", "ω [rad/s]",
+                                            std::string("Angular velocity") + kBand)) +
          (RestsByLaw(motion)
               ? "<p>The spin centre rests: its velocity is zero by its law.</p>\n"
               : VelocityPlot(motion, 3, "Velocity", "v [mm/s]", std::string(of) + kBand)) +

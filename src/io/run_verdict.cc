@@ -17,9 +17,19 @@ double ShareOfPoses(const BodySummary& body, std::int64_t pairs) {
   return pairs == 0 ? 0 : static_cast<double>(body.poses) / static_cast<double>(pairs);
 }
 
-std::vector<std::string> AllWarnings(const RunRecord& record) {
+// Of the run, and of the bodies' motion; with the body's name where there are several.
+std::vector<std::string> AllWarnings(const RunReport& report) {
+  const RunRecord& record = report.record;
   std::vector<std::string> warnings = record.warnings;
   warnings.insert(warnings.end(), record.summary.warnings.begin(), record.summary.warnings.end());
+  const std::vector<BodySummary> totals = TotalsOfBodies(report);
+  for (std::size_t i = 0; i < report.bodies.size(); ++i) {
+    if (report.bodies[i].motion == nullptr) continue;
+    const std::string& name = totals[i].name;
+    for (const std::string& warning : report.bodies[i].motion->warnings) {
+      warnings.push_back(name.empty() ? warning : name + ": " + warning);
+    }
+  }
   return warnings;
 }
 
@@ -47,7 +57,7 @@ std::pair<const char*, const char*> Judge(const RunReport& report) {
   if (exceeds(kDoubtfulChi2Dof) || below(kUsableShare)) {
     return {"doubtful", "Doubtful: read the warnings before you use it"};
   }
-  if (below(kGoodShare) || exceeds(kRemarkableChi2Dof) || !AllWarnings(report.record).empty()) {
+  if (below(kGoodShare) || exceeds(kRemarkableChi2Dof) || !AllWarnings(report).empty()) {
     return {"usable_with_warnings", "Usable, with warnings"};
   }
   return {"good", "Good"};
@@ -112,7 +122,7 @@ std::string RunVerdictSection(const RunReport& report) {
 }
 
 std::string RunWarningsSection(const RunReport& report) {
-  const std::vector<std::string> warnings = AllWarnings(report.record);
+  const std::vector<std::string> warnings = AllWarnings(report);
   if (warnings.empty()) return "<section><h2>Warnings</h2><p>None.</p></section>\n";
   std::string text = "<section><h2>Warnings</h2>\n<ul>\n";
   for (const std::string& warning : warnings) text += "<li>" + EscapeHtml(warning) + "</li>\n";

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "filter_segments.h"
 #include "fit_recording.h"
 #include "motion_warnings.h"
 
@@ -88,6 +89,7 @@ std::size_t JointFitStride(std::size_t measured, std::size_t max_joint_frames) {
 MotionAnalysis AnalyseMotion(const MotionData& data, const AnalyseOptions& options) {
   MotionAnalysis analysis;
   analysis.series = PosesOf(data);
+  CheckSeries(analysis.series);
   analysis.samples.resize(analysis.series.size());
   const std::size_t measured = CountMeasured(analysis.series);
   if (measured < kFewestPoses) {

@@ -86,19 +86,6 @@ bool IsOneRod(const CenterProblem& problem) {
                      [](const ObservedFrame& frame) { return frame.pose_whitener.rows() < 6; });
 }
 
-/// A rod's roll is not measured, so a point beside it is none that could be named: the centre is
-/// sought on the rod's own line.
-void SeekOnRod(CenterProblem& problem) {
-  const auto& balls = problem.data->balls_in_body_mm;
-  if (balls.size() > 1) {
-    problem.basis = (balls.back() - balls.front()).normalized();
-    return;
-  }
-  const PoseSample& pose = problem.data->frames[problem.poses.front().index].pose;
-  problem.basis = pose.world_from_body.rotation.conjugate() *
-                  pose.free_axis_in_world.value_or(Eigen::Vector3d::UnitX());
-}
-
 void FindDirections(CenterProblem& problem) {
   problem.basis = Eigen::Matrix3d::Identity();
   problem.free_axis_in_body.reset();
@@ -110,7 +97,9 @@ void FindDirections(CenterProblem& problem) {
     return;
   }
   if (problem.one_rod) {
-    SeekOnRod(problem);
+    // Its roll is not measured, so a point beside it is none that could be named: the centre is
+    // sought on the rod's own line.
+    problem.basis = RodInBody(problem);
     return;
   }
   problem.main_axis_in_body = axis->in_body;
@@ -165,6 +154,14 @@ void LeaveOut(CenterProblem& problem, const std::vector<std::size_t>& places) {
   CountRows(problem);
   ScaleTime(problem);
   FindDirections(problem);
+}
+
+Eigen::Vector3d RodInBody(const CenterProblem& problem) {
+  const auto& balls = problem.data->balls_in_body_mm;
+  if (balls.size() > 1) return (balls.back() - balls.front()).normalized();
+  const PoseSample& pose = problem.data->frames[problem.poses.front().index].pose;
+  return pose.world_from_body.rotation.conjugate() *
+         pose.free_axis_in_world.value_or(Eigen::Vector3d::UnitX());
 }
 
 CenterModel ModelOf(const CenterProblem& problem, int path_terms, bool condensed) {

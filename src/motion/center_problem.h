@@ -39,6 +39,9 @@ CenterProblem PrepareCenter(const MotionData& data);
 /// depends on them again.
 void LeaveOut(CenterProblem& problem, const std::vector<std::size_t>& places);
 
+/// Gives the direction of one rod's line, unit, in the body frame.
+Eigen::Vector3d RodInBody(const CenterProblem& problem);
+
 /// Makes the model of one law (coefficients of the path) on the frames as observed or condensed.
 CenterModel ModelOf(const CenterProblem& problem, int path_terms, bool condensed);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 namespace stereomotion {
 namespace {
@@ -93,6 +94,10 @@ std::string Basis(const SpinCenterResult& result) {
 
 std::string Outcome(const CenterProblem& problem, const SpinCenterResult& result) {
   if (problem.frames.size() < 2) return "too few poses to tell a spin centre";
+  if (!problem.turns && problem.one_rod) {
+    return "one rod: a turn about it is not seen, and what is seen tells no axis of rotation: no "
+           "spin centre";
+  }
   if (!problem.turns) {
     return "no rotation beyond the noise: all points of the body move alike, no spin centre";
   }
@@ -101,6 +106,10 @@ std::string Outcome(const CenterProblem& problem, const SpinCenterResult& result
   }
   if (result.law == PathLaw::kFree) {
     if (result.law_given) return "a free path tells no spin centre";
+    if (result.evidence_open) {
+      return "too few frames to tell the law of the path, so no spin centre is told; name the law "
+             "(--law) if you know it";
+    }
     return std::string(result.bends_otherwise
                            ? "a cubic path fits much better than any law, so no spin centre is told"
                            : "no law of the path fits, so no spin centre is told") +
@@ -109,18 +118,36 @@ std::string Outcome(const CenterProblem& problem, const SpinCenterResult& result
   return "spin centre not determined; " + Basis(result);
 }
 
+/// Measures the angle between two poses; of one rod that between its directions.
+class Turn {
+ public:
+  explicit Turn(const CenterProblem& problem) {
+    if (problem.one_rod) rod_in_body_ = RodInBody(problem);
+  }
+  [[nodiscard]] double Between(const ObservedFrame& a, const ObservedFrame& b) const {
+    const Eigen::Quaterniond &from = a.world_from_body.rotation, &to = b.world_from_body.rotation;
+    if (!rod_in_body_) return from.angularDistance(to);
+    const Eigen::Vector3d u = from * *rod_in_body_, v = to * *rod_in_body_;
+    return std::atan2(u.cross(v).norm(), u.dot(v));
+  }
+
+ private:
+  std::optional<Eigen::Vector3d> rod_in_body_;
+};
+
 }  // namespace
 
-double RangeOfRotation(const std::vector<ObservedFrame>& frames) {
+double RangeOfRotation(const CenterProblem& problem) {
   constexpr int kRounds = 8;
+  const std::vector<ObservedFrame>& frames = problem.poses;
+  const Turn turn(problem);
   double range_rad = 0;
   std::size_t from = 0;
   for (int round = 0; round < kRounds && !frames.empty(); ++round) {
     std::size_t farthest = from;
     double largest_rad = 0;
     for (std::size_t i = 0; i < frames.size(); ++i) {
-      const double angle_rad =
-          frames[from].world_from_body.rotation.angularDistance(frames[i].world_from_body.rotation);
+      const double angle_rad = turn.Between(frames[from], frames[i]);
       if (angle_rad <= largest_rad) continue;
       largest_rad = angle_rad;
       farthest = i;

@@ -10,8 +10,9 @@ namespace stereomotion {
 /// Says in words how well the spin centre is known, and why not better.
 std::string CenterVerdict(const CenterProblem& problem, const SpinCenterResult& result);
 
-/// Finds the largest angle between two poses: exact but for flukes, at linear cost (each round
-/// takes the pose farthest from the last).
-double RangeOfRotation(const std::vector<ObservedFrame>& frames);
+/// Finds the largest angle between two poses, of one rod (whose roll is arbitrary) between two of
+/// its directions: exact but for flukes, at linear cost (each round takes the pose farthest from
+/// the last).
+double RangeOfRotation(const CenterProblem& problem);
 
 }  // namespace stereomotion

@@ -13,7 +13,8 @@ struct FilterSegment {
   std::vector<double> times_s;        ///< of the measured poses, after the series' first sample
 };
 
-/// Checks what a filter needs: times ascend strictly, measured poses and covariances are finite.
+/// Checks what all of motion needs: times ascend strictly, measured poses are finite, their
+/// rotations and free axes of unit length, their covariances symmetric and positive semi-definite.
 /// Throws std::invalid_argument.
 void CheckSeries(const PoseSeries& series);
 

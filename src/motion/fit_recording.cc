@@ -49,6 +49,8 @@ void AddOffsetUncertainty(const MotionData& data, const TimeOffset& offset, bool
                           const std::vector<std::size_t>& kept, const SpinCenterOptions& options,
                           SpinCenterResult& spin) {
   if (!spin.center || !options.with_calibration || !HasAllPoints(data)) return;
+  // Without any other common part stated, this one alone would pass for the whole.
+  if (!spin.center->calibration_covariance_mm2) return;
   SpinCenterOptions same = options;
   same.law = spin.law;
   same.only_given_law = true;

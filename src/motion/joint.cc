@@ -51,6 +51,18 @@ Common CommonFrames(const PoseSeries& first, const PoseSeries& second) {
   return common;
 }
 
+/// Where two bodies have too few common frames: too few, or a rod's turn about itself is open.
+JointFailure WhyTooFew(const PoseSeries& first, const PoseSeries& second) {
+  const auto is_rod = [](const PoseSeries& series) {
+    const auto is_open = [](const PoseSample& pose) {
+      return pose.measured && pose.free_axis_in_world.has_value();
+    };
+    return std::any_of(series.begin(), series.end(), is_open) &&
+           std::none_of(series.begin(), series.end(), IsWhole);
+  };
+  return is_rod(first) || is_rod(second) ? JointFailure::kOneRod : JointFailure::kTooFewPoses;
+}
+
 /// Expresses the swapped bodies' axis in the order of `like`.
 OneAxis Swapped(const OneAxis& swapped, const OneAxis& like) {
   OneAxis axis = swapped;
@@ -146,7 +158,7 @@ void UseCenters(const JointFit& fit, const Matrix6d& covariance, std::size_t fra
 
 Expected<Joint, JointFailure> FindJoint(const PoseSeries& first, const PoseSeries& second) {
   const Common common = CommonFrames(first, second);
-  if (common.pairs.size() < kLeastFrames) return Unexpected{JointFailure::kTooFewPoses};
+  if (common.pairs.size() < kLeastFrames) return Unexpected{WhyTooFew(first, second)};
   const Expected<OneAxis, AxisFailure> axis = FitAxisOfBoth(common);
   if (!axis) return Unexpected{JointFailure::kNoRelativeRotation};
   std::optional<OneAxis> hinge;

@@ -31,25 +31,25 @@ const std::vector<JointConvention>& JointConventions() {
   // Signs follow from the axes. With Z to the right, +z moves what hangs down forward and what
   // stands up backward; +x moves what hangs down towards −Z, medially on the right side.
   static const std::vector<JointConvention> conventions = {
-      {"ankle", "zxy", {"dorsiflexion", "inversion", "internal rotation"}, {1, 1, 1}, kWu2002},
-      {"hip", "zxy", {"flexion", "adduction", "internal rotation"}, {1, 1, 1}, kWu2002},
+      {"ankle", "zxy", {"dorsiflexion", "inversion", "internal_rotation"}, {1, 1, 1}, kWu2002},
+      {"hip", "zxy", {"flexion", "adduction", "internal_rotation"}, {1, 1, 1}, kWu2002},
       {"knee",
        "zxy",
-       {"flexion", "adduction", "internal rotation"},
+       {"flexion", "adduction", "internal_rotation"},
        {-1, 1, 1},
        "Grood & Suntay 1983, J. Biomech. Eng. 105:136"},
       {"spine",
        "zxy",
-       {"flexion", "lateral bending to the right", "axial rotation to the left"},
+       {"flexion", "lateral_bending_to_the_right", "axial_rotation_to_the_left"},
        {-1, 1, 1},
        kWu2002},
       {"shoulder",
        "yxy",
-       {"plane of elevation", "elevation", "internal rotation"},
+       {"plane_of_elevation", "elevation", "internal_rotation"},
        {1, -1, 1},
        kWu2005},
-      {"elbow", "zxy", {"flexion", "adduction (carrying angle)", "pronation"}, {1, 1, 1}, kWu2005},
-      {"wrist", "zxy", {"flexion", "ulnar deviation", "pronation"}, {1, 1, 1}, kWu2005},
+      {"elbow", "zxy", {"flexion", "carrying_angle", "pronation"}, {1, 1, 1}, kWu2005},
+      {"wrist", "zxy", {"flexion", "ulnar_deviation", "pronation"}, {1, 1, 1}, kWu2005},
   };
   return conventions;
 }

@@ -28,7 +28,7 @@ void NoteGaps(const PoseSeries& series, Notes& notes) {
   }
   if (lost == 0) return;
   notes.push_back(
-      fmt::format("{} of {} frames have no pose (longest gap {:.3g} s): their rows are empty "
+      fmt::format("no pose in {} of {} frames (longest gap {:.3g} s): their rows are empty "
                   "or flagged as filled",
                   lost, series.size(), longest_s));
 }
@@ -39,9 +39,15 @@ void NoteFreeRoll(const PoseSeries& series, Notes& notes) {
   });
   if (free == 0) return;
   notes.push_back(
-      fmt::format("the body is a single rod: its roll is not seen in {} frames, and a turn "
+      fmt::format("the body is a single rod: its roll is not seen in {} {}, and a turn "
                   "about the rod leaves no trace in this answer",
-                  free));
+                  free, free == 1 ? "frame" : "frames"));
+}
+
+bool IsOneRod(const PoseSeries& series) {
+  return std::all_of(series.begin(), series.end(), [](const PoseSample& pose) {
+    return !pose.measured || pose.free_axis_in_world.has_value();
+  });
 }
 
 const LawFit* FitOf(const SpinCenterResult& spin, PathLaw law) {
@@ -60,7 +66,11 @@ void NoteLaw(const SpinCenterResult& spin, Notes& notes) {
                     "degrees of freedom): its uncertainties do not hold",
                     word, fit->chi2, fit->dof));
   }
-  if (spin.evidence_open) {
+  if (spin.evidence_open && spin.law == PathLaw::kFree) {
+    notes.push_back(
+        "too few frames to tell the law of the spin centre's path; name it (--law) if you know "
+        "it");
+  } else if (spin.evidence_open) {
     notes.push_back(
         fmt::format("a narrower law explains the data about as well as '{}': the wider one's "
                     "uncertainty is given; name the law (--law) if you know it",
@@ -71,16 +81,15 @@ void NoteLaw(const SpinCenterResult& spin, Notes& notes) {
         "the spin centre hangs on the law 'accelerated', the widest there is: no wider one can "
         "contradict it, and on a path that only looks like it the centre is elsewhere");
   }
-  if (!spin.law_given && spin.law == PathLaw::kFree) {
+  if (!spin.law_given && spin.law == PathLaw::kFree && !spin.evidence_open) {
     notes.push_back(
         "no point of the body rests, or moves uniformly or with constant acceleration: "
         "there is no spin centre; axes.csv has the screw axis of each interval");
   }
   if (!spin.left_out.empty()) {
     notes.push_back(
-        fmt::format("{} frames contradict the law of the others and were left out of the "
-                    "spin centre",
-                    spin.left_out.size()));
+        fmt::format("left out of the spin centre, for they contradict the law of the others: {} {}",
+                    spin.left_out.size(), spin.left_out.size() == 1 ? "frame" : "frames"));
   }
 }
 
@@ -98,6 +107,10 @@ void NoteNoise(const SpinCenterResult& spin, Notes& notes) {
 }
 
 void NoteAxis(const MotionAnalysis& analysis, Notes& notes) {
+  if (!analysis.axis && IsOneRod(analysis.series)) {
+    notes.push_back("what is seen of a single rod's rotation tells no axis");
+    return;
+  }
   if (!analysis.axis) {
     notes.push_back("the rotation does not rise above its noise: there is no axis");
     return;

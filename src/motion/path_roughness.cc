@@ -38,13 +38,16 @@ std::vector<std::size_t> Anchors(std::size_t first, std::size_t last, std::size_
   return anchors;
 }
 
-/// Second moments of a Taylor coefficient. They tell its size alone, for at another place of the
-/// neighbourhood it points another way: the same in all directions, turn and place apart.
+/// Second moments of a Taylor coefficient. At another place of the neighbourhood it points another
+/// way: its mean square is added in all directions, turn and place apart.
 Matrix6d MomentOf(const Vector6d& coefficient) {
-  Vector6d squares;
-  squares << Eigen::Vector3d::Constant(coefficient.head<3>().squaredNorm()),
-      Eigen::Vector3d::Constant(coefficient.tail<3>().squaredNorm());
-  return squares.asDiagonal();
+  Matrix6d moment = Matrix6d::Zero();
+  for (const int block : {0, 3}) {
+    const Eigen::Vector3d c = coefficient.segment<3>(block);
+    moment.block<3, 3>(block, block) =
+        c * c.transpose() + c.squaredNorm() / 3 * Eigen::Matrix3d::Identity();
+  }
+  return moment;
 }
 
 /// Moments of order k + 2 by those of order k, where a motion swings or circles at `rate`.
@@ -58,10 +61,11 @@ void Extrapolate(std::vector<Matrix6d>& moments) {
   for (int k = kHighestDegree + 1; k <= kHighestDegree + 2; ++k) {
     const double factorials = (k - 2.0) * (k - 3) / (k * (k - 1.0));
     for (const int block : {0, 3}) {
-      const double below = moments[k - 2](block, block), lowest = moments[k - 4](block, block);
+      const auto below = moments[k - 2].block<3, 3>(block, block);
+      const double lowest = moments[k - 4].block<3, 3>(block, block).trace();
       if (lowest <= 0) continue;
-      const double moment = factorials * factorials * below * below / lowest;
-      moments[k].diagonal().segment<3>(block).setConstant(moment);
+      moments[k].block<3, 3>(block, block) =
+          factorials * factorials * below.trace() / lowest * below;
     }
   }
 }

@@ -10,7 +10,7 @@ namespace stereomotion {
 /// Holds how strongly a path bends near a time: second moments of its Taylor coefficients (in the
 /// stretch's unit of time), as far as wide pilot fits bound them, and how far those fits reach.
 struct PathBend {
-  std::vector<Matrix6d> moments;  ///< by order; of orders that no pilot tells: zero
+  std::vector<Matrix6d> moments;  ///< by order; 7 and 8 extrapolated, 9: zero
   int quartic_reach = 0;          ///< half window [poses] in which a polynomial of degree 4 holds
   int sextic_reach = 0;           ///< likewise of degree 6
   /// Of the noise's variance: above one where not even the least window of degree 6 holds.

@@ -50,7 +50,7 @@ void TakeLaw(const SpinCenterOptions& options, SpinCenterResult& result) {
 /// Weighs the laws on the frames that the problem holds.
 SpinCenterResult Weigh(const CenterProblem& problem, const SpinCenterOptions& options) {
   SpinCenterResult result;
-  result.range_of_rotation_rad = RangeOfRotation(problem.poses);
+  result.range_of_rotation_rad = RangeOfRotation(problem);
   for (const PathLaw law : {PathLaw::kFixed, PathLaw::kUniform, PathLaw::kAccelerated}) {
     if (options.only_given_law && law != options.law) continue;
     result.laws.push_back(FitLaw(problem, law, options.with_calibration));

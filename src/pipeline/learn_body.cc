@@ -154,8 +154,12 @@ Expected<LearnedBodies, LearnBodyFailure> LearnBodies(const PairSource& source,
       measure.count < 0 ? options.max_pairs : std::min(measure.count, options.max_pairs);
   const auto pairs = DetectPairs(source, setup, measure, stop, each_pair);
   if (!pairs) return Unexpected{LearnBodyFailure::kInterrupted};
+  if (static_cast<std::int64_t>(pairs->size()) < kFewestPairsToLearn) {
+    return Unexpected{LearnBodyFailure::kTooFewPairs};
+  }
   const LearnedPoints points = FindPoints(*pairs, left, right);
-  const GroupOptions grouping;
+  GroupOptions grouping;
+  grouping.min_frames = static_cast<int>(kFewestPairsToLearn);
   if (!HasEnoughBalls(points.frames, grouping)) return Unexpected{LearnBodyFailure::kTooFewBalls};
   const std::vector<BallGroup> groups = FindGroups(points.frames, grouping);
   if (groups.empty()) return Unexpected{LearnBodyFailure::kNoGroup};

@@ -117,6 +117,18 @@ class Foreign(MotionCase):
         self.assertIn('--point-sigma-mm',
                       self.analyse('trial.c3d', '--pose-sigma-mm', '1', '--force', code=2).stderr)
 
+    # Two bodies that turn apart, taken for one: no answer, at once, and no files.
+    def test_not_one_rigid_body(self):
+        rng = random.Random(9)
+        frames = [seen_markers(a, rng) + seen_markers(b, rng)
+                  for a, b in zip(true_poses(60), reversed(true_poses(60)))]
+        labels = [f'M{k}' for k in range(8)]
+        (self.path / 'person.c3d').write_bytes(c3d(labels, frames))
+        refused = self.analyse('person.c3d', code=1)
+        self.assertIn('not one rigid body', refused.stderr)
+        self.assertIn('--points', refused.stderr)
+        self.assertFalse((self.path / 'person-motion').exists())
+
     # --points again is another body: both turn, alike but for the noise, about the same point.
     def test_two_clusters(self):
         rng = random.Random(8)

@@ -109,9 +109,43 @@ class Analyse(MotionCase):
                 (('run', '--relative-to', '99'), '--relative-to'),
                 (('run', '--relative-to', 'bodie'), '--relative-to'),
                 (('run', '--joint', 'knee'), 'expected two'),
+                (('run', '--cutoff-hz', '6'), '--filter butterworth'),
+                (('run', '--filter', 'rts', '--order', '4'), '--filter butterworth'),
+                (('run', '--side', 'left'), '--joint'),
+                (('run', '--output', ''), '--output'),
                 (('run', '--filter', 'butterworth', '--cutoff-hz', '15'), '--filter')):
             with self.subTest(arguments=arguments):
                 self.assertIn(words, self.analyse(*arguments, code=2).stderr)
+
+    def files(self, folder):
+        return {file.name: file.read_bytes() for file in (self.path / folder).iterdir()}
+
+    # What is refused only after the analysis leaves the RUN as it was, too.
+    def test_refused_changes_nothing(self):
+        shutil.copytree(self.path / 'run', self.path / 'refused')
+        before = self.files('refused')
+        for arguments in (('--relative-to', '999'), ('--filter', 'butterworth', '--cutoff-hz', '15')):
+            self.analyse('refused', '--law', 'accelerated', *arguments, code=2)
+            self.assertEqual(self.files('refused'), before, arguments)
+            self.analyse('refused', '--output', 'none', *arguments, code=2)
+            self.assertFalse((self.path / 'none').exists())
+
+    # Beside the new motion no file of an earlier analysis stays; files of others do.
+    def test_nothing_stale(self):
+        self.analyse('run', '--output', 'stale', '--filter', 'butterworth', '--angles', 'zxy',
+                     '--relative-to', '0')
+        for name in ('joint.json', 'joint_angles.csv', 'notes.csv'):
+            (self.path / 'stale' / name).write_text('', encoding='utf-8')
+        self.analyse('run', '--output', 'stale', '--force', '--angles', 'zxy')
+        self.assertEqual(sorted(self.files('stale')),
+                         ['angles.csv', 'axes.csv', 'motion.csv', 'motion.json', 'notes.csv'])
+
+    # Where nothing was analysed before, a file of such a name is somebody else's.
+    def test_foreign_files_stay(self):
+        (self.path / 'foreign').mkdir()
+        (self.path / 'foreign/filtered.csv').write_text('mine', encoding='utf-8')
+        self.analyse('run', '--output', 'foreign')
+        self.assertEqual(self.files('foreign')['filtered.csv'], b'mine')
 
     def test_changed_rig_is_told(self):
         shutil.copytree(self.path / 'run', self.path / 'older')

@@ -102,6 +102,32 @@ TEST_F(RunReportTest, TwoBodiesWithTheirMotion) {
   EXPECT_FALSE(Has(html, ">nan"));
 }
 
+// A rod's turn about itself is not seen: ω normal to it is all that is drawn, as in motion.csv.
+TEST_F(RunReportTest, RodShowsNoOpenVelocity) {
+  RunTrace trace(body_);
+  MotionAnalysis motion;
+  for (int i = 0; i < 5; ++i) {
+    trace.Add(Pair(i));
+    motion.series.emplace_back().timestamp_ns = i * 10'000'000;
+    MotionSample& sample = motion.samples.emplace_back();
+    sample.status = MotionStatus::kOk;
+    sample.velocity.covariance.setIdentity();
+    sample.velocity.open_axis_in_world = Eigen::Vector3d(1, 1, 0).normalized();
+  }
+  motion.warnings = {"its roll <is> open"};
+  const auto html = [&] { return RunHtml({record_, {{&trace, &motion}}, left_, right_, masks_}); };
+  record_.summary.pairs_read = record_.summary.poses = 5;
+  EXPECT_EQ(FindXmlError(html()), "");
+  EXPECT_TRUE(Has(html(), "Angular velocity"));
+  EXPECT_TRUE(Has(html(), "<li>its roll &lt;is&gt; open</li>"));
+  EXPECT_TRUE(Has(html(), "verdict usable_with_warnings"));
+  for (MotionSample& sample : motion.samples) {
+    sample.velocity.open_axis_in_world = Eigen::Vector3d(1, 1, 1).normalized();
+  }
+  EXPECT_FALSE(Has(html(), "Angular velocity"));
+  EXPECT_TRUE(Has(html(), "No component of the angular velocity is determined"));
+}
+
 TEST_F(RunReportTest, NothingToShow) {
   const RunTrace trace(body_);
   const std::string html = Html(trace);

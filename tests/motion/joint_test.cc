@@ -100,6 +100,14 @@ TEST(FindJoint, TooFewCommonFrames) {
   EXPECT_EQ(FindJoint(bodies.first, bodies.second).error(), JointFailure::kTooFewPoses);
 }
 
+TEST(FindJoint, OneRodIsNamed) {
+  auto rng = MakeTestRng();
+  TwoBodies bodies = Exact(4, Ball(1), rng);
+  for (PoseSample& pose : bodies.second) pose.free_axis_in_world = Eigen::Vector3d::UnitX();
+  EXPECT_EQ(FindJoint(bodies.first, bodies.second).error(), JointFailure::kOneRod);
+  EXPECT_EQ(FindJoint(bodies.second, bodies.first).error(), JointFailure::kOneRod);
+}
+
 TEST(FindJoint, NoRelativeRotation) {
   auto rng = MakeTestRng();
   TwoBodies bodies = Exact(30, Ball(0), rng);

@@ -55,6 +55,31 @@ TEST(SpinCenter, OneRodTellsACentreOnItsLine) {
   EXPECT_FALSE(FindSpinCenter(SwingingRod({-60, 40, 0}, rng)).center);
 }
 
+/// Its roll is arbitrary: the range is that of the rod's directions.
+TEST(SpinCenter, RangeOfOneRodIsThatOfItsDirections) {
+  auto rng = testing::MakeTestRng();
+  const MotionData data = SwingingRod({-60, 0, 0}, rng);
+  double range_rad = 0;
+  for (const MotionFrame& a : data.frames) {
+    for (const MotionFrame& b : data.frames) {
+      const Eigen::Vector3d &u = *a.pose.free_axis_in_world, &v = *b.pose.free_axis_in_world;
+      range_rad = std::max(range_rad, std::atan2(u.cross(v).norm(), u.dot(v)));
+    }
+  }
+  // A direction's σ is 0.03 mm over the root of the balls' Σ(x − mean)², 200 mm; of many pairs.
+  constexpr double kTolerance_rad = 5 * 1.5 * 0.03 / 200;
+  EXPECT_NEAR(FindSpinCenter(data).range_of_rotation_rad, range_rad, kTolerance_rad);
+}
+
+TEST(SpinCenter, TooFewPosesForALaw) {
+  auto rng = testing::MakeTestRng();
+  MotionData data = testing::MakeMotionScene(testing::FixedMotion(), rng).exact;
+  data.frames.resize(3);
+  const auto result = FindSpinCenter(data);
+  if (result.law != PathLaw::kFree) return;
+  EXPECT_NE(result.verdict.find("too few frames"), std::string::npos) << result.verdict;
+}
+
 TEST(SpinCenter, TooFewPoses) {
   auto rng = testing::MakeTestRng();
   MotionData data = testing::MakeMotionScene(testing::FixedMotion(), rng).exact;

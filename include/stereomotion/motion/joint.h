@@ -12,6 +12,7 @@ namespace stereomotion {
 /// Says why two bodies give no joint.
 enum class JointFailure {
   kTooFewPoses,         ///< fewer than three common measured frames
+  kOneRod,              ///< a body is a single rod: no frame tells its turn about itself
   kNoRelativeRotation,  ///< the bodies do not turn against each other beyond the noise
 };
 

@@ -12,8 +12,12 @@
 
 namespace stereomotion {
 
+/// So many pairs with a body tell it from points that stand so by chance.
+constexpr std::int64_t kFewestPairsToLearn = 3;
+
 /// Says why no body was learned (words: docs/formats.md).
 enum class LearnBodyFailure {
+  kTooFewPairs,  ///< fewer than kFewestPairsToLearn were read
   kTooFewBalls,  ///< fewer than four balls could be followed in 3D
   kNoMotion,     ///< nothing moves: bodies and background cannot be told apart
   kNoGroup,      ///< no balls keep their mutual distances
