@@ -65,7 +65,10 @@ class Bodies(MotionCase):
         # Two poses' noise about an axis; 5 σ of each of 60 frames.
         angles = rows(self.path / 'run/joint_angles.csv')
         self.assertEqual(len(angles), FRAMES)
-        name = next(key for key in angles[0] if key.startswith('flexion'))
+        for key in angles[0]:
+            self.assertRegex(key, r'^[a-z][a-z0-9_]*$')
+        self.assertIn('u_internal_rotation_rad', angles[0])
+        name = 'flexion_rad'
         for i, row in enumerate(angles):
             self.assertLess(abs(abs(float(row[name])) - abs(flexion(i))),
                             5 * math.sqrt(2) * SIGMA_RAD)
@@ -82,6 +85,16 @@ class Bodies(MotionCase):
         self.assertEqual(spin['law'], 'fixed')
         error = [a - b for a, b in zip(spin['in_world_mm'], HIP_MM)]
         self.assertLess(chi2(error, spin['in_world_covariance_mm2']), CHI2_3)
+
+    def test_lost_body_is_told(self):
+        shutil.copytree(self.path / 'run', self.path / 'lost')
+        (self.path / 'lost/run.json').write_text(json.dumps(
+            {'format': 'stereomotion-run/1', 'cameras': {'left': 'cam0', 'right': 'cam1'},
+             'inputs': [], 'bodies': [{'name': name, 'folder': name}
+                                      for name in ('thigh', 'shank', 'foot')]}), encoding='utf-8')
+        told = self.analyse('lost').stderr
+        self.assertIn("'foot'", told)
+        self.assertNotIn("'thigh'", told)
 
     def test_what_is_refused(self):
         for arguments, words in (

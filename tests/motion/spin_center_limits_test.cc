@@ -76,7 +76,7 @@ TEST(SpinCenter, TooFewPosesForALaw) {
   MotionData data = testing::MakeMotionScene(testing::FixedMotion(), rng).exact;
   data.frames.resize(3);
   const auto result = FindSpinCenter(data);
-  if (result.law != PathLaw::kFree) return;
+  ASSERT_EQ(result.law, PathLaw::kFree);
   EXPECT_NE(result.verdict.find("too few frames"), std::string::npos) << result.verdict;
 }
 

@@ -83,6 +83,23 @@ std::string CoverageTable::Failures(const Row& row, const Limits& limits, double
                           : ::testing::AssertionFailure() << failures;
 }
 
+::testing::AssertionResult CoverageTable::CoversAtLeast(int repetitions, double family_z) const {
+  std::string failures;
+  for (const Row& row : rows_) {
+    const int n = row.errors.samples();
+    if (n < repetitions) failures += fmt::format("{}: only {} repetitions\n", row.quantity, n);
+    const double covered = n == 0 ? 0 : row.covered.minCoeff() / n;
+    // Written so that a NaN fails.
+    if (!(covered >= kLowest && row.errors.nees_z() <= family_z)) {
+      failures += fmt::format("{}: 95 % intervals cover only {:.4f}, NEES/dof {:.4f}\n",
+                              row.quantity, covered, row.errors.nees_per_dof());
+    }
+  }
+  if (rows_.empty()) failures = "nothing was measured\n";
+  return failures.empty() ? ::testing::AssertionSuccess()
+                          : ::testing::AssertionFailure() << failures;
+}
+
 ::testing::AssertionResult CoverageTable::IsPlausible(double family_z) const {
   std::string failures;
   for (const Row& row : rows_) {

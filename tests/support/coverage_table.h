@@ -29,6 +29,9 @@ class CoverageTable {
   /// component's 95 % interval holds the truth in 95 ± 2 %, the NEES is consistent, and the RMSE is
   /// at most 1.05 times the bound where one is stated.
   [[nodiscard]] ::testing::AssertionResult Holds(int repetitions, double family_z) const;
+  /// Checks the lower side only, for covariances that hold the bound of a bias: every component's
+  /// interval holds the truth in at least 93 %, and the NEES does not exceed its bound.
+  [[nodiscard]] ::testing::AssertionResult CoversAtLeast(int repetitions, double family_z) const;
   /// Checks the same as far as few repetitions can tell: shares to `family_z` of the binomial's
   /// spread, the RMSE to that of χ².
   [[nodiscard]] ::testing::AssertionResult IsPlausible(double family_z) const;
