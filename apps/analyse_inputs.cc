@@ -10,6 +10,7 @@
 #include "motion_run.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/motion_reader.h"
+#include "stereomotion/io/run_reader.h"
 #include "stereomotion/motion/pose_noise.h"
 
 namespace stereomotion::app {
@@ -64,6 +65,17 @@ void LoadPoses(const AnalyseArguments& arguments, AnalyseInputs& inputs) {
   inputs.bodies.push_back({"body1", inputs.folder, std::move(data)});
 }
 
+// Bodies that run.json names but whose poses are gone are left out, not silently.
+void NoteLostBodies(const fs::path& run, std::vector<std::string>& warnings) {
+  for (const std::string& name : ReadRunOrigin(run).body_folders) {
+    if (fs::exists(run / name / "poses.csv")) continue;
+    warnings.push_back(
+        fmt::format("{}: found no poses.csv of the body '{}' that run.json names; "
+                    "it is left out",
+                    run.string(), name));
+  }
+}
+
 // RUN/poses.csv of one body, RUN/<body>/poses.csv of several.
 void LoadRun(const AnalyseArguments& arguments, const AnalyseOptions& options,
              AnalyseInputs& inputs) {
@@ -75,6 +87,7 @@ void LoadRun(const AnalyseArguments& arguments, const AnalyseOptions& options,
     for (const auto& entry : fs::directory_iterator(run)) {
       if (fs::exists(entry.path() / "poses.csv")) folders.push_back(entry.path());
     }
+    NoteLostBodies(run, inputs.warnings);
   }
   if (folders.empty()) {
     throw UserError(run.string() + ": found no poses.csv, expected a RUN that `track` wrote");

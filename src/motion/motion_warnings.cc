@@ -144,15 +144,22 @@ void NoteWideCenter(const MotionData& data, const SpinCenterResult& spin, Notes&
                   kDegPerRad * spin.range_of_rotation_rad, u_mm));
 }
 
+// Two significant digits of the uncertainty, as in the summary on the terminal.
+int DecimalsFor(double u) {
+  constexpr int kMost = 9;
+  if (!(u > 0) || !std::isfinite(u)) return 3;
+  return std::clamp(1 - static_cast<int>(std::floor(std::log10(u))), 0, kMost);
+}
+
 void NoteOffset(const MotionAnalysis& analysis, Notes& notes) {
   if (!analysis.time_offset) return;
   const TimeOffset& offset = *analysis.time_offset;
   constexpr double kMsPerS = 1000;
   if (offset.significant) {
     notes.push_back(fmt::format(
-        "the right camera's images are {:.3g} ± {:.2g} ms later than their time says; "
-        "{}",
-        kMsPerS * offset.offset_s, kMsPerS * offset.u_s,
+        "the right camera's images are {0:.{2}f} ± {1:.{2}f} ms later than their time says; "
+        "{3}",
+        kMsPerS * offset.offset_s, kMsPerS * offset.u_s, DecimalsFor(kMsPerS * offset.u_s),
         analysis.time_offset_applied
             ? "the motion is given for the left camera's time"
             : "so long a recording is not corrected for it: track it in parts (--start, --count)"));

@@ -73,7 +73,7 @@ TEST(SpinCenter, RangeOfOneRodIsThatOfItsDirections) {
 
 TEST(SpinCenter, TooFewPosesForALaw) {
   auto rng = testing::MakeTestRng();
-  MotionData data = testing::MakeMotionScene(testing::FixedMotion(), rng).exact;
+  MotionData data = testing::MakeMotionScene(testing::UniformMotion(), rng).exact;
   data.frames.resize(3);
   const auto result = FindSpinCenter(data);
   ASSERT_EQ(result.law, PathLaw::kFree);
