@@ -7,6 +7,7 @@
 #include "bench/axis_baselines.h"
 #include "bench/center_baselines.h"
 #include "bench/cluster_poses.h"
+#include "stereomotion/core/units.h"
 #include "stereomotion/motion/joint.h"
 #include "stereomotion/motion/screw_axis.h"
 #include "stereomotion/motion/spin_center.h"
@@ -115,10 +116,9 @@ double Nees2(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance) {
 
 void AddAxis(const char* method, bool is_baseline, const AxisLine& axis,
              std::optional<double> direction_nees, std::vector<TrialError>& errors) {
-  constexpr double kDegreesPerRad = 57.29577951308232;
   const double sine = axis.direction.cross(TrueAxis()).norm();
   errors.push_back(
-      {kDirection, method, is_baseline, kDegreesPerRad * std::asin(sine), direction_nees, 2});
+      {kDirection, method, is_baseline, kDegreesPerRadian * std::asin(sine), direction_nees, 2});
   const double distance_mm = axis.direction.cross(FootOnAxis_mm() - axis.point_mm).norm();
   errors.push_back({kPlace, method, is_baseline, distance_mm, std::nullopt, 2});
 }

@@ -12,6 +12,7 @@ RigCamera MakeCamera(const CalibrationCamera& given) {
   RigCamera camera;
   camera.name = given.name;
   camera.source = given.source;
+  camera.source_settings = given.source_settings;
   camera.width_px = given.width_px;
   camera.height_px = given.height_px;
   CameraModel& model = camera.model;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "camera_motion.h"
+#include "stereomotion/core/units.h"
 
 namespace stereomotion {
 namespace {
@@ -15,7 +16,6 @@ namespace {
 // inside the balls' bounding box; range of depth against the distance.
 constexpr double kLeastCoverage = 0.25;
 constexpr double kLeastDepth = 0.1;
-constexpr double kRadToDeg = 57.29577951308232;
 
 struct Coverage {
   double image_share = 0;  ///< of the second camera or the first, whichever is less
@@ -81,8 +81,8 @@ void NoteStrength(const Rig& old_rig, const Rig& refined, std::vector<Calibratio
                    fmt::format("the cameras' relative pose is less certain than it was ({:.2g}° "
                                "and {:.2g} mm, were {:.2g}° and {:.2g} mm): use more frames, with "
                                "the body all over the volume",
-                               kRadToDeg * turn_after, shift_after_mm, kRadToDeg * turn_before,
-                               shift_before_mm)});
+                               kDegreesPerRadian * turn_after, shift_after_mm,
+                               kDegreesPerRadian * turn_before, shift_before_mm)});
 }
 
 void NoteFit(const FittedBundle& fit, const RefinedRig& refined,

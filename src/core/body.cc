@@ -12,6 +12,21 @@ std::size_t CountBalls(const Body& body) {
   return count;
 }
 
+Eigen::Vector3d Centroid(const std::vector<Eigen::Vector3d>& points_mm) {
+  Eigen::Vector3d sum_mm = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point_mm : points_mm) sum_mm += point_mm;
+  return points_mm.empty() ? sum_mm
+                           : Eigen::Vector3d(sum_mm / static_cast<double>(points_mm.size()));
+}
+
+Eigen::Vector3d Centroid(const Body& body) {
+  Eigen::Vector3d sum_mm = Eigen::Vector3d::Zero();
+  for (const Rod& rod : body.rods) {
+    for (const Eigen::Vector3d& ball_mm : rod.balls_in_body_mm) sum_mm += ball_mm;
+  }
+  return sum_mm / static_cast<double>(CountBalls(body));
+}
+
 Eigen::MatrixXd CovarianceOfBalls(const Body& body) {
   const auto size = static_cast<Eigen::Index>(3 * CountBalls(body));
   if (body.covariance_mm2.size() > 0) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "camera_source.h"
 #include "find_images.h"
 #include "frame_parts.h"
 #include "stereomotion/io/suggest.h"
@@ -82,7 +83,9 @@ CalibrationCamera ReadCalibrationCamera(const YamlReader& node) {
                     "initial", "world_images", "world_seeds"});
   CalibrationCamera camera;
   camera.name = node.Required("name").Name();
-  if (const auto source = node.Optional("source")) camera.source = source->Text();
+  if (const auto source = node.Optional("source")) {
+    ReadCameraSource(*source, camera.source, camera.source_settings);
+  }
   if (const auto size = node.Optional("image_size_px")) {
     if (size->Numbers(2).size() == 2) {
       camera.width_px = size->Items()[0].Integer(1, kLargestSidePx);

@@ -5,12 +5,11 @@
 
 #include "report_sections.h"
 #include "report_text.h"
+#include "stereomotion/core/units.h"
 #include "stereomotion/geometry/so3.h"
 
 namespace stereomotion {
 namespace {
-
-constexpr double kDegrees = 180 / M_PI;
 
 struct Row {
   const char* name;
@@ -24,13 +23,20 @@ std::vector<Row> RowsOf(const RigCamera& camera) {
   const CameraModel& m = camera.model;
   const Eigen::Vector3d turn = LogSO3(camera.cam_from_world.rotation);
   const Eigen::Vector3d& t = camera.cam_from_world.translation_mm;
-  return {{"f<sub>x</sub>", "px", m.fx_px, 1},     {"f<sub>y</sub>", "px", m.fy_px, 1},
-          {"c<sub>x</sub>", "px", m.cx_px, 1},     {"c<sub>y</sub>", "px", m.cy_px, 1},
-          {"k<sub>1</sub>", "", m.k1, 1},          {"k<sub>2</sub>", "", m.k2, 1},
-          {"p<sub>1</sub>", "", m.p1, 1},          {"p<sub>2</sub>", "", m.p2, 1},
-          {"k<sub>3</sub>", "", m.k3, 1},          {"rotation x", "°", turn.x(), kDegrees},
-          {"rotation y", "°", turn.y(), kDegrees}, {"rotation z", "°", turn.z(), kDegrees},
-          {"translation x", "mm", t.x(), 1},       {"translation y", "mm", t.y(), 1},
+  return {{"f<sub>x</sub>", "px", m.fx_px, 1},
+          {"f<sub>y</sub>", "px", m.fy_px, 1},
+          {"c<sub>x</sub>", "px", m.cx_px, 1},
+          {"c<sub>y</sub>", "px", m.cy_px, 1},
+          {"k<sub>1</sub>", "", m.k1, 1},
+          {"k<sub>2</sub>", "", m.k2, 1},
+          {"p<sub>1</sub>", "", m.p1, 1},
+          {"p<sub>2</sub>", "", m.p2, 1},
+          {"k<sub>3</sub>", "", m.k3, 1},
+          {"rotation x", "°", turn.x(), kDegreesPerRadian},
+          {"rotation y", "°", turn.y(), kDegreesPerRadian},
+          {"rotation z", "°", turn.z(), kDegreesPerRadian},
+          {"translation x", "mm", t.x(), 1},
+          {"translation y", "mm", t.y(), 1},
           {"translation z", "mm", t.z(), 1}};
 }
 

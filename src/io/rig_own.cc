@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "camera_source.h"
 #include "rig_formats.h"
 #include "stereomotion/geometry/so3.h"
 
@@ -63,7 +64,9 @@ RigCamera ReadCamera(const YamlReader& node) {
       {"name", "source", "image_size_px", "intrinsics", "distortion", "cam_from_world", "noise"});
   RigCamera camera;
   camera.name = node.Required("name").Name();
-  if (const auto source = node.Optional("source")) camera.source = source->Text();
+  if (const auto source = node.Optional("source")) {
+    ReadCameraSource(*source, camera.source, camera.source_settings);
+  }
   const YamlReader size = node.Required("image_size_px");
   if (size.Numbers(2).size() == 2) {
     constexpr int kLargest = 65536;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "camera_source.h"
 #include "covariance_yaml.h"
 #include "number_text.h"
 #include "stereomotion/geometry/so3.h"
@@ -42,7 +43,9 @@ std::string CameraText(const RigCamera& camera) {
   const Eigen::Quaterniond q = WithPositiveW(camera.cam_from_world.rotation);
   const Eigen::Vector3d& t_mm = camera.cam_from_world.translation_mm;
   std::string text = "  - name: " + Word(camera.name) + "\n";
-  if (!camera.source.empty()) text += "    source: " + QuotedText(camera.source) + "\n";
+  if (!camera.source.empty()) {
+    text += "    source: " + CameraSourceText(camera.source, camera.source_settings) + "\n";
+  }
   text += fmt::format("    image_size_px: [{}, {}]\n", camera.width_px, camera.height_px);
   text += "    intrinsics: " +
           Map({{"fx_px", m.fx_px}, {"fy_px", m.fy_px}, {"cx_px", m.cx_px}, {"cy_px", m.cy_px}}) +

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <string>
 
-#include "stereomotion/io/output_error.h"
+#include "stereomotion/core/output_error.h"
 
 namespace stereomotion {
 

@@ -7,12 +7,12 @@
 #include "line_plot.h"
 #include "report_text.h"
 #include "run_sections.h"
+#include "stereomotion/core/units.h"
 #include "stereomotion/geometry/so3.h"
 
 namespace stereomotion {
 namespace {
 
-constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kUmPerMm = 1000;
 constexpr double kTwoPi = 6.283185307179586;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

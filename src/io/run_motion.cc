@@ -9,12 +9,12 @@
 #include "open_turn.h"
 #include "report_text.h"
 #include "run_sections.h"
+#include "stereomotion/core/units.h"
 #include "stereomotion/io/motion_writer.h"
 
 namespace stereomotion {
 namespace {
 
-constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr double kMsPerS = 1000;
 constexpr std::size_t kMostPoints = 2000;  // more than a screen has pixels across
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

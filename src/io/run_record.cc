@@ -124,6 +124,7 @@ std::string RunJson(const RunRecord& record) {
       {"warnings", warnings}};
   if (summary.median_chi2_dof) json["median_chi2_dof"] = Rounded(*summary.median_chi2_dof);
   if (seconds > 0) json["pairs_per_second"] = rate;
+  if (!record.live_json.empty()) json["live"] = Json::parse(record.live_json);
   // File names need not be UTF-8; a name that is not must not cost the whole record.
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

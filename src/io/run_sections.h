@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "stereomotion/core/median.h"
 #include "stereomotion/io/run_report.h"
 
 namespace stereomotion {
@@ -15,10 +16,7 @@ double MedianOf(const RunTrace& trace, const Get& get) {
   for (const TracePoint& point : trace.points()) {
     if (point.has_pose) numbers.push_back(get(point));
   }
-  if (numbers.empty()) return 0;
-  const auto middle = numbers.begin() + static_cast<std::ptrdiff_t>(numbers.size() / 2);
-  std::nth_element(numbers.begin(), middle, numbers.end());
-  return *middle;
+  return Median(std::move(numbers));
 }
 
 /// Lists the totals of the bodies; where there is one, they are those of the run.

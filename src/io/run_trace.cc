@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "stereomotion/core/units.h"
 #include "stereomotion/geometry/so3.h"
 #include "stereomotion/pose/estimate_pose.h"
 #include "stereomotion/pose/status_words.h"
@@ -19,16 +20,13 @@ void KeepEverySecond(std::vector<T>& list) {
 
 }  // namespace
 
-RunTrace::RunTrace(const Body& body) : centroid_in_body_mm_(Eigen::Vector3d::Zero()) {
+RunTrace::RunTrace(const Body& body) {
   for (const Rod& rod : body.rods) {
     for (const Eigen::Vector3d& ball_mm : rod.balls_in_body_mm) {
       balls_in_body_mm_.push_back(ball_mm);
-      centroid_in_body_mm_ += ball_mm;
     }
   }
-  if (!balls_in_body_mm_.empty()) {
-    centroid_in_body_mm_ /= static_cast<double>(balls_in_body_mm_.size());
-  }
+  centroid_in_body_mm_ = Centroid(balls_in_body_mm_);
 }
 
 void RunTrace::Add(const PairMeasurement& measurement) {
@@ -43,10 +41,9 @@ void RunTrace::Add(const PairMeasurement& measurement) {
 }
 
 void RunTrace::AddPoint(const PairMeasurement& measurement) {
-  constexpr double kSecondsPerNs = 1e-9;
   TracePoint& point = points_.emplace_back();
   point.frame = measurement.frame;
-  point.time_s = kSecondsPerNs * static_cast<double>(measurement.timestamp_ns - first_ns_);
+  point.time_s = SecondsBetween(first_ns_, measurement.timestamp_ns);
   if (!measurement.pose) return;
   const PoseEstimate& pose = *measurement.pose;
   point.has_pose = true;

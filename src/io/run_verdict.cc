@@ -5,11 +5,11 @@
 
 #include "report_text.h"
 #include "run_sections.h"
+#include "stereomotion/core/units.h"
 
 namespace stereomotion {
 namespace {
 
-constexpr double kDegreesPerRadian = 57.29577951308232;
 // Below, more was lost than a ball hidden now and then explains; below that, most of the motion.
 constexpr double kGoodShare = 0.95, kUsableShare = 0.5;
 

@@ -7,7 +7,7 @@
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/body_folder.h"
 #include "stereomotion/io/csv_rows.h"
-#include "stereomotion/io/output_error.h"
+#include "stereomotion/core/output_error.h"
 
 namespace stereomotion {
 namespace {

@@ -19,12 +19,6 @@ std::size_t CountMeasured(const PoseSeries& series) {
       series.begin(), series.end(), [](const PoseSample& pose) { return pose.measured; }));
 }
 
-Eigen::Vector3d Centroid(const std::vector<Eigen::Vector3d>& points_mm) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& point : points_mm) sum += point;
-  return points_mm.empty() ? sum : Eigen::Vector3d(sum / static_cast<double>(points_mm.size()));
-}
-
 // v and a of the centre by its law; its covariance with the local fit's ω and α is not known.
 void MoveToCenter(const CenterState& state, BodyVelocity& velocity) {
   velocity.velocity_mm_s = state.velocity_mm_s;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "motion/observed_frame.h"
+#include "stereomotion/geometry/covariance.h"
 #include "stereomotion/motion/screw_axis.h"
 
 namespace stereomotion {
@@ -97,10 +98,6 @@ CommonErrors ErrorsOf(const MotionData& data, const PoseSeries& series, double t
     common.errors.push_back(std::move(errors));
   }
   return common;
-}
-
-double LargestSigma(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
 }
 
 void Accumulate(const MeanAxis& base, const MeanAxis& moved, AxisCommonPart& part, double& pitch2) {

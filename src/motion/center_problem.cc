@@ -11,12 +11,6 @@
 namespace stereomotion {
 namespace {
 
-Eigen::Vector3d Centroid(const std::vector<Eigen::Vector3d>& balls_mm) {
-  Eigen::Vector3d sum_mm = Eigen::Vector3d::Zero();
-  for (const Eigen::Vector3d& ball_mm : balls_mm) sum_mm += ball_mm;
-  return balls_mm.empty() ? sum_mm : Eigen::Vector3d(sum_mm / static_cast<double>(balls_mm.size()));
-}
-
 /// Throws where an unknown structure is a line of balls: poses then do not tell its roll, and a
 /// structure that bends could not be told from one that does not.
 void CheckStructure(const MotionData& data) {

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <optional>
 
+#include "stereomotion/core/units.h"
+
 namespace stereomotion {
 namespace {
 
@@ -160,10 +162,9 @@ double RangeOfRotation(const CenterProblem& problem) {
 }
 
 std::string CenterVerdict(const CenterProblem& problem, const SpinCenterResult& result) {
-  constexpr double kDegrees = 57.29577951308232;
   std::string text;
   if (problem.turns) {
-    text = "range of rotation " + Number(kDegrees * result.range_of_rotation_rad) + "°: ";
+    text = "range of rotation " + Number(kDegreesPerRadian * result.range_of_rotation_rad) + "°: ";
   }
   text += Outcome(problem, result);
   if (problem.turns) text += " (" + OtherLaws(problem, result) + "; ± standard uncertainty)";

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "stereomotion/core/median.h"
+
 namespace stereomotion {
 namespace {
 
@@ -76,9 +78,7 @@ double MedianPeriodS(const PoseSeries& series) {
   for (std::size_t i = 1; i < series.size(); ++i) {
     periods_s.push_back(SecondsAfterFirst(series, i) - SecondsAfterFirst(series, i - 1));
   }
-  const auto middle = periods_s.begin() + static_cast<std::ptrdiff_t>(periods_s.size() / 2);
-  std::nth_element(periods_s.begin(), middle, periods_s.end());
-  return *middle;
+  return Median(std::move(periods_s));
 }
 
 std::vector<FilterSegment> SplitAtGaps(const PoseSeries& series, double max_gap_s) {

@@ -8,6 +8,7 @@
 #include "motion/center_calibration.h"
 #include "motion/center_covariance.h"
 #include "motion/solve_center.h"
+#include "stereomotion/core/units.h"
 
 namespace stereomotion {
 namespace {
@@ -82,13 +83,11 @@ std::vector<Rigid3> RefinedPoses(const CenterProblem& problem, const Solution& s
 std::vector<CenterState> StatesOf(const CenterProblem& problem, const Solution& solution,
                                   const GlobalInformation& information,
                                   const std::optional<Eigen::MatrixXd>& calibration) {
-  constexpr double kSecondsPerNs = 1e-9;
   const std::vector<MotionFrame>& frames = problem.data->frames;
   std::vector<CenterState> states;
   for (const MotionFrame& frame : frames) {
-    const auto since_ns = frame.pose.timestamp_ns - frames.front().pose.timestamp_ns;
-    states.push_back(
-        StateAt(solution, information, calibration, kSecondsPerNs * static_cast<double>(since_ns)));
+    const double time_s = SecondsBetween(frames.front().pose.timestamp_ns, frame.pose.timestamp_ns);
+    states.push_back(StateAt(solution, information, calibration, time_s));
   }
   return states;
 }

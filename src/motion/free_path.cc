@@ -7,6 +7,7 @@
 
 #include "motion/path_chain.h"
 #include "motion/reduce_frames.h"
+#include "stereomotion/core/units.h"
 #include "stereomotion/geometry/so3.h"
 
 namespace stereomotion {
@@ -16,7 +17,6 @@ constexpr Eigen::Index kState = 6;
 constexpr int kMaxIterations = 50;
 /// The centre moves by less than this part of its uncertainty: done.
 constexpr double kConverged = 1e-6;
-constexpr double kSecondsPerNs = 1e-9;
 
 /// Everything that the iteration moves.
 struct FreePath {
@@ -38,8 +38,8 @@ FreePath StartOf(const CenterProblem& problem) {
   path.locals.assign(frames.size(), Eigen::Vector3d::Zero());
   Eigen::VectorXd state = Eigen::VectorXd::Zero(kState);
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    const auto since_ns = frames[i].pose.timestamp_ns - frames.front().pose.timestamp_ns;
-    path.times_s.push_back(kSecondsPerNs * static_cast<double>(since_ns));
+    path.times_s.push_back(
+        SecondsBetween(frames.front().pose.timestamp_ns, frames[i].pose.timestamp_ns));
     if (path.poses[i] != nullptr) {
       state.head<3>() = path.poses[i]->world_from_body * problem.origin_in_body_mm;
     }

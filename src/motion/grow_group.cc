@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stereomotion/core/median.h"
+
 namespace stereomotion {
 namespace {
 
@@ -170,9 +172,7 @@ class Grower {
     for (const PointCloud& frame : frames_) {
       for (const CloudPoint& point : frame) sigmas_mm.push_back(point.sigma_mm);
     }
-    const auto middle = sigmas_mm.begin() + static_cast<std::ptrdiff_t>(sigmas_mm.size() / 2);
-    std::nth_element(sigmas_mm.begin(), middle, sigmas_mm.end());
-    return *middle;
+    return Median(std::move(sigmas_mm));
   }
 
   const std::vector<PointCloud>& frames_;

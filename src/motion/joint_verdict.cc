@@ -1,26 +1,18 @@
 #include "motion/joint_verdict.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstdio>
 
 #include "motion/significance.h"
+#include "stereomotion/core/units.h"
+#include "stereomotion/geometry/covariance.h"
 
 namespace stereomotion {
-namespace {
-
-double LargestSigma(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
-}
-
-}  // namespace
-
 std::string VerdictOf(const Joint& joint) {
-  constexpr double kDegrees = 180 / M_PI;
   const char* const kind = joint.free_axis_in_first ? "hinge" : "ball joint";
   const char* const where =
       joint.free_axis_in_first ? " across the axis and not at all along it" : "";
-  const double range_deg = joint.range_of_rotation_rad * kDegrees;
+  const double range_deg = joint.range_of_rotation_rad * kDegreesPerRadian;
   char text[300];
   // Noise alone, which the covariance speaks of, would say ± 0.04 mm of a place that wanders 7 mm.
   if (!IsAdequate(joint.chi2, joint.dof)) {

@@ -1,4 +1,3 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -6,6 +5,7 @@
 #include "motion/screw_fit.h"
 #include "motion/significance.h"
 #include "motion/velocity_window.h"
+#include "stereomotion/geometry/covariance.h"
 #include "stereomotion/geometry/so3.h"
 #include "stereomotion/motion/screw_axis.h"
 #include "stereomotion/motion/velocity.h"
@@ -15,10 +15,6 @@ namespace {
 
 constexpr int kDriftUnknowns = kScrewAndDrift - kScrewUnknowns;
 constexpr double kLeastSigmas = 3;  // of ω; below it no instantaneous axis is determined
-
-double LargestSigma(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
-}
 
 /// Finds the measured sample nearest the middle of the time that the measured ones span.
 std::size_t MiddleOf(const PoseSeries& series) {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stereomotion/core/units.h"
+
 namespace stereomotion {
 namespace {
-
-constexpr double kDegPerRad = 57.29577951308232;
 
 using Notes = std::vector<std::string>;
 
@@ -120,7 +120,7 @@ void NoteAxis(const MotionAnalysis& analysis, Notes& notes) {
   notes.push_back(
       fmt::format("the body turned about more than one axis: the mean axis is only their "
                   "summary (RMS deviation {:.3g}°)",
-                  kDegPerRad * axis.dispersion_rad));
+                  kDegreesPerRadian * axis.dispersion_rad));
 }
 
 double BodyRadius_mm(const std::vector<Eigen::Vector3d>& balls_mm) {
@@ -141,7 +141,7 @@ void NoteWideCenter(const MotionData& data, const SpinCenterResult& spin, Notes&
   notes.push_back(
       fmt::format("range of rotation {:.3g}°: the spin centre is known only to ± {:.2g} mm "
                   "(one sigma), worse than the body is large; turn it farther",
-                  kDegPerRad * spin.range_of_rotation_rad, u_mm));
+                  kDegreesPerRadian * spin.range_of_rotation_rad, u_mm));
 }
 
 // Two significant digits of the uncertainty, as in the summary on the terminal.

@@ -5,6 +5,7 @@
 #include <Eigen/QR>
 #include <stdexcept>
 
+#include "stereomotion/core/units.h"
 #include "stereomotion/geometry/so3.h"
 
 namespace stereomotion {
@@ -50,15 +51,13 @@ std::vector<ObservedFrame> ObservedFrames(const MotionData& data) {
   std::vector<ObservedFrame> frames;
   for (std::size_t i = 0; i < data.frames.size(); ++i) {
     const MotionFrame& given = data.frames[i];
-    constexpr double kSecondsPerNs = 1e-9;
     if (i > 0 && given.pose.timestamp_ns <= data.frames[i - 1].pose.timestamp_ns) {
       throw std::invalid_argument("the frames' times do not ascend");
     }
     if (!given.pose.measured) continue;
     ObservedFrame frame;
     frame.index = i;
-    frame.time_s = kSecondsPerNs * static_cast<double>(given.pose.timestamp_ns -
-                                                       data.frames.front().pose.timestamp_ns);
+    frame.time_s = SecondsBetween(data.frames.front().pose.timestamp_ns, given.pose.timestamp_ns);
     frame.world_from_body = given.pose.world_from_body;
     frame.points = ObservationsOf(data, given);
     if (frame.points.empty()) frame.pose_whitener = PoseWhitener(given.pose);

@@ -7,6 +7,7 @@
 
 #include "motion/filter_segments.h"
 #include "motion/path_stencil.h"
+#include "stereomotion/core/units.h"
 
 namespace stereomotion {
 namespace {
@@ -43,10 +44,8 @@ void OffsetProblem::ChooseFrames() {
   for (std::size_t i = 0; i < data_.frames.size(); ++i) {
     const MotionFrame& frame = data_.frames[i];
     if (!frame.pose.measured || frame.pose.free_axis_in_world || !DeterminePose(frame)) continue;
-    constexpr double kSecondsPerNs = 1e-9;
     const auto since = [&](std::size_t j) {
-      return kSecondsPerNs *
-             static_cast<double>(frame.pose.timestamp_ns - data_.frames[j].pose.timestamp_ns);
+      return SecondsBetween(data_.frames[j].pose.timestamp_ns, frame.pose.timestamp_ns);
     };
     if (!run.empty() && since(run.back()) > kFarthestPeriods * period_s_) finish();
     run.push_back(i);
@@ -55,11 +54,10 @@ void OffsetProblem::ChooseFrames() {
 }
 
 void OffsetProblem::MakeStencils() {
-  constexpr double kSecondsPerNs = 1e-9;
   const int size = static_cast<int>(frames_.size());
   const auto after = [&](int j, int k) {
-    return kSecondsPerNs * static_cast<double>(data_.frames[frames_[j]].pose.timestamp_ns -
-                                               data_.frames[frames_[k]].pose.timestamp_ns);
+    return SecondsBetween(data_.frames[frames_[k]].pose.timestamp_ns,
+                          data_.frames[frames_[j]].pose.timestamp_ns);
   };
   int begin = 0, end = 0;  // of the run without long gaps
   for (int k = 0; k < size; ++k) {

@@ -7,6 +7,7 @@
 
 #include "motion/axis_fit.h"
 #include "motion/significance.h"
+#include "stereomotion/geometry/covariance.h"
 #include "stereomotion/geometry/so3.h"
 
 namespace stereomotion {
@@ -75,10 +76,6 @@ std::optional<Eigen::Matrix4d> CovarianceOf(const AxisPair& pair) {
 Eigen::Matrix3d OfUnitVector(const Eigen::Vector3d& a, const Eigen::Matrix2d& covariance) {
   const Eigen::Matrix<double, 3, 2> turned = -Hat(a) * AcrossBasis(a);
   return turned * covariance * turned.transpose();
-}
-
-double LargestSigma(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
 }
 
 /// Direction in which rods leave the body's axis open: its turn about the rod.

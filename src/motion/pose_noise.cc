@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "stereomotion/core/median.h"
 #include "stereomotion/geometry/so3.h"
 
 namespace stereomotion {
@@ -93,10 +94,8 @@ PoseNoise NoiseOfLaw(const Poses& poses) {
 double NormalScale(std::vector<double> values) {
   if (values.empty()) return kInfinity;
   for (double& value : values) value = std::abs(value);
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
   constexpr double kNormal = 1.4826;
-  return kNormal * *middle;
+  return kNormal * Median(std::move(values));
 }
 
 // Third differences have 1 + 9 + 9 + 1 times the variance of what they are made of.

@@ -6,6 +6,7 @@
 
 #include "motion/structure_covariance.h"
 #include "motion/structure_problem.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {
@@ -41,10 +42,7 @@ double RobustScale(const StructureProblem& problem) {
                         (observation.rows == 2 ? kMedianOfTwo : kMedianOfThree));
     }
   }
-  if (lengths.empty()) return 1;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return std::max(1.0, *middle);
+  return std::max(1.0, Median(std::move(lengths)));
 }
 
 /// Takes out what lies beyond the limit; returns how many that are.

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stereomotion/core/median.h"
+
 namespace stereomotion {
 namespace {
 
@@ -76,10 +78,8 @@ int RigidFit::LeaveOutMisfits() {
     if (poses_[i]) misfits.push_back(Misfit_mm(i));
   }
   if (misfits.empty()) return 0;
-  const auto middle = misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2);
-  std::nth_element(misfits.begin(), middle, misfits.end());
   constexpr double kWorse = 5;
-  const double limit_mm = kWorse * *middle;
+  const double limit_mm = kWorse * Median(std::move(misfits));
   int count = 0;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     if (!poses_[i] || Misfit_mm(i) <= limit_mm || limit_mm <= 0) continue;

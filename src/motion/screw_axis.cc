@@ -1,9 +1,9 @@
 #include "stereomotion/motion/screw_axis.h"
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <stdexcept>
 
+#include "stereomotion/geometry/covariance.h"
 #include "stereomotion/geometry/so3.h"
 
 namespace stereomotion {
@@ -73,10 +73,6 @@ Matrix8x6 ScrewJacobian(const ScrewAxis& screw, const Rigid3& motion) {
   jacobian << direction, InverseAcross(n, screw.angle_rad) * right, angle,
       along / screw.angle_rad - d / (screw.angle_rad * screw.angle_rad) * angle;
   return jacobian;
-}
-
-double LargestSigma(const Eigen::Matrix3d& covariance) {
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance).eigenvalues()[2]);
 }
 
 }  // namespace

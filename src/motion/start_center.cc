@@ -4,6 +4,7 @@
 
 #include "motion/reduce_frames.h"
 #include "motion/solve_center.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {
@@ -16,9 +17,7 @@ constexpr double kMedianChi2 = 2.366;
 constexpr double kCauchy_sigma = 2.385;
 
 double RobustScale(std::vector<double> excess) {
-  const auto middle = excess.begin() + static_cast<std::ptrdiff_t>(excess.size() / 2);
-  std::nth_element(excess.begin(), middle, excess.end());
-  return std::max(1.0, std::sqrt(*middle / kMedianChi2));
+  return std::max(1.0, std::sqrt(Median(std::move(excess)) / kMedianChi2));
 }
 
 /// One step of weighted least squares. What is open stays where it is: only a start may do so.

@@ -21,13 +21,6 @@ void CheckAssignment(const Body& body, const BallAssignment& assignment, std::si
   if (!valid) throw std::invalid_argument("an assignment names no ball, camera or detection");
 }
 
-Eigen::Vector3d Centroid(const Body& body) {
-  Eigen::Vector3d sum_mm = Eigen::Vector3d::Zero();
-  const std::vector<BallId> ids = AllBalls(body);
-  for (const BallId& id : ids) sum_mm += BallInBody(body, id);
-  return sum_mm / static_cast<double>(ids.size());
-}
-
 }  // namespace
 
 PoseProblem MakePoseProblem(const RigCamera& left, const RigCamera& right, const Body& body,

@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "stereomotion/core/median.h"
+
 namespace stereomotion {
 namespace {
 
@@ -46,9 +48,7 @@ Worst FindWorst(const PoseProblem& problem, const PoseSolution& solution) {
     if (all.back() > worst.chi2) worst = {i, all.back(), 1};
   }
   // The upper median: with half of the observations false none of them is dropped for being small.
-  const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-  std::nth_element(all.begin(), middle, all.end());
-  worst.scale2 = std::max(1.0, *middle / kMedianChi2Of2);
+  worst.scale2 = std::max(1.0, MedianInPlace(all) / kMedianChi2Of2);
   return worst;
 }
 

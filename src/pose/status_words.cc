@@ -22,6 +22,8 @@ std::string_view StatusWord(PoseStatus status) {
       return "roll_undetermined";
     case PoseStatus::kInconsistent:
       return "inconsistent";
+    case PoseStatus::kDropped:
+      return "dropped";
   }
   assert(false);
   return "";

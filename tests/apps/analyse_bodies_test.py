@@ -10,7 +10,8 @@ import random
 import resource
 import shutil
 
-from motion_case import CHI2_3, MotionCase, about, chi2, main, noisy, poses_csv, product, rows, turn
+from motion_case import CHI2_3, MotionCase, about, chi2, noisy, poses_csv, product, turn
+from small_recording import main, rows
 
 SIGMA_RAD, SIGMA_MM = 0.001, 0.05
 HIP_MM, KNEE_IN_THIGH_MM, KNEE_IN_SHANK_MM = (0, 900, 0), (5, -400, 10), (0, 30, -20)
@@ -40,18 +41,19 @@ class Bodies(MotionCase):
         super().setUpClass()
         rng = random.Random(3)
         for k, name in enumerate(('thigh', 'shank')):
-            (cls.path / 'run' / name).mkdir(parents=True)
+            (cls.base / 'run' / name).mkdir(parents=True)
             poses = [noisy(both[k], rng, SIGMA_RAD, SIGMA_MM) for both in leg()]
-            (cls.path / 'run' / name / 'poses.csv').write_text(
+            (cls.base / 'run' / name / 'poses.csv').write_text(
                 poses_csv(poses, SIGMA_RAD, SIGMA_MM), encoding='utf-8')
-        (cls.path / 'run/run.json').write_text(
-            '{"format": "stereomotion-run/1", "cameras": {"left": "cam0", "right": "cam1"}, "inputs": []}\n',
+        (cls.base / 'run/run.json').write_text(
+            '{"format": "stereomotion-run/1", "cameras": {"left": "cam0", "right": "cam1"}, '
+            '"inputs": []}\n',
             encoding='utf-8')
 
     def test_joint(self):
         done = self.analyse('run', '--relative-to', 'thigh', '--joint', 'knee', '--angles', 'zxy')
         self.assertIn('joint of shank and thigh', done.stdout)
-        joint = json.loads((self.path / 'run/joint.json').read_text(encoding='utf-8'))
+        joint = json.loads((self.base / 'run/joint.json').read_text(encoding='utf-8'))
         self.assertEqual(joint['format'], 'stereomotion-joint/1')
         self.assertEqual([joint['first'], joint['second']], ['shank', 'thigh'])
         # A hinge: the centre is free along z; across it the two numbers' χ² is below three's.
@@ -63,7 +65,7 @@ class Bodies(MotionCase):
         self.assertGreater(abs(joint['axis']['in_second'][2]), math.cos(0.01))
 
         # Two poses' noise about an axis; 5 σ of each of 60 frames.
-        angles = rows(self.path / 'run/joint_angles.csv')
+        angles = rows(self.base / 'run/joint_angles.csv')
         self.assertEqual(len(angles), FRAMES)
         for key in angles[0]:
             self.assertRegex(key, r'^[a-z][a-z0-9_]*$')
@@ -72,23 +74,23 @@ class Bodies(MotionCase):
         for i, row in enumerate(angles):
             self.assertLess(abs(abs(float(row[name])) - abs(flexion(i))),
                             5 * math.sqrt(2) * SIGMA_RAD)
-        relative = rows(self.path / 'run/shank/relative.csv')
+        relative = rows(self.base / 'run/shank/relative.csv')
         self.assertLess(abs(float(relative[0]['qz']) - math.sin(flexion(0) / 2)),
                         5 * math.sqrt(2) * SIGMA_RAD / 2)
-        self.assertTrue((self.path / 'run/shank/angles.csv').exists())
+        self.assertTrue((self.base / 'run/shank/angles.csv').exists())
         # Against itself the base has no angles.
-        self.assertFalse((self.path / 'run/thigh/relative.csv').exists())
+        self.assertFalse((self.base / 'run/thigh/relative.csv').exists())
 
     def test_hip_rests(self):
         self.analyse('run', '--output', 'out')
-        spin = json.loads((self.path / 'out/thigh/motion.json').read_text())['spin_center']
+        spin = json.loads((self.base / 'out/thigh/motion.json').read_text())['spin_center']
         self.assertEqual(spin['law'], 'fixed')
         error = [a - b for a, b in zip(spin['in_world_mm'], HIP_MM)]
         self.assertLess(chi2(error, spin['in_world_covariance_mm2']), CHI2_3)
 
     def test_lost_body_is_told(self):
-        shutil.copytree(self.path / 'run', self.path / 'lost')
-        (self.path / 'lost/run.json').write_text(json.dumps(
+        shutil.copytree(self.base / 'run', self.base / 'lost')
+        (self.base / 'lost/run.json').write_text(json.dumps(
             {'format': 'stereomotion-run/1', 'cameras': {'left': 'cam0', 'right': 'cam1'},
              'inputs': [], 'bodies': [{'name': name, 'folder': name}
                                       for name in ('thigh', 'shank', 'foot')]}), encoding='utf-8')
@@ -110,17 +112,17 @@ class Bodies(MotionCase):
     # before stays, whole.
     def test_interrupted(self):
         self.analyse('run', '--law', 'fixed')
-        shutil.copytree(self.path / 'run', self.path / 'before')
-        kept = [file.relative_to(self.path / 'before')
-                for file in (self.path / 'before').rglob('*') if file.is_file()]
+        shutil.copytree(self.base / 'run', self.base / 'before')
+        kept = [file.relative_to(self.base / 'before')
+                for file in (self.base / 'before').rglob('*') if file.is_file()]
         for limit in (1, 1000, 3000, 10000):
             done = self.run_program(
                 'analyse', 'run', '--law', 'uniform',
                 preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
             self.assertNotEqual(done.returncode, 0)
             for name in kept:
-                self.assertEqual((self.path / 'run' / name).read_bytes(),
-                                 (self.path / 'before' / name).read_bytes(), name)
+                self.assertEqual((self.base / 'run' / name).read_bytes(),
+                                 (self.base / 'before' / name).read_bytes(), name)
 
 
 if __name__ == '__main__':

@@ -9,7 +9,8 @@ import math
 import random
 import struct
 
-from motion_case import CHI2_3, MotionCase, about, c3d, chi2, main, noisy, poses_csv, rows, times, turn
+from motion_case import CHI2_3, MotionCase, about, c3d, chi2, noisy, poses_csv, times, turn
+from small_recording import main, rows
 
 CENTER_MM, PLACE_MM = (10, 20, 30), (100, 100, 100)
 SIGMA_RAD, SIGMA_MM = 0.001, 0.05
@@ -36,7 +37,7 @@ def seen_markers(pose, rng, sigma_mm=0.1):
 
 class Foreign(MotionCase):
     def center(self, folder):
-        motion = json.loads((self.path / folder / 'motion.json').read_text(encoding='utf-8'))
+        motion = json.loads((self.base / folder / 'motion.json').read_text(encoding='utf-8'))
         return motion['spin_center']
 
     def expect_center(self, spin, largest_u_mm):
@@ -48,7 +49,7 @@ class Foreign(MotionCase):
 
     # The centre's bound for N poses: about σ √(1 + (|c| σ_R / σ)²) / (√N · spread of the turns).
     def test_poses_without_covariance(self):
-        (self.path / 'pivot.csv').write_text(poses_csv(pivot_poses()), encoding='utf-8')
+        (self.base / 'pivot.csv').write_text(poses_csv(pivot_poses()), encoding='utf-8')
         done = self.analyse('pivot.csv')
         self.assertIn('carry no covariance', done.stderr)
         spin = self.center('pivot-motion')
@@ -59,13 +60,13 @@ class Foreign(MotionCase):
         self.analyse('pivot.csv', '--force')
 
     def test_poses_of_stated_noise(self):
-        (self.path / 'stated.csv').write_text(poses_csv(pivot_poses()), encoding='utf-8')
+        (self.base / 'stated.csv').write_text(poses_csv(pivot_poses()), encoding='utf-8')
         self.analyse('stated.csv', '--pose-sigma-deg', math.degrees(SIGMA_RAD), '--pose-sigma-mm',
                      SIGMA_MM)
         stated = self.center('stated-motion')
         self.expect_center(stated, 0.2)
         # The same as in the file's own columns.
-        (self.path / 'own.csv').write_text(poses_csv(pivot_poses(), SIGMA_RAD, SIGMA_MM),
+        (self.base / 'own.csv').write_text(poses_csv(pivot_poses(), SIGMA_RAD, SIGMA_MM),
                                            encoding='utf-8')
         self.analyse('own.csv')
         for a, b in zip(stated['in_body_mm'], self.center('own-motion')['in_body_mm']):
@@ -74,7 +75,7 @@ class Foreign(MotionCase):
         self.assertIn('has covariances of its own', done.stderr)
 
     def test_two_poses_are_no_answer(self):
-        (self.path / 'two.csv').write_text(poses_csv(pivot_poses(2)), encoding='utf-8')
+        (self.base / 'two.csv').write_text(poses_csv(pivot_poses(2)), encoding='utf-8')
         self.analyse('two.csv', '--pose-sigma-deg', '1', '--pose-sigma-mm', '1', code=1)
         self.assertIn('too few poses', self.analyse('two.csv', '--force', code=2).stderr)
 
@@ -82,19 +83,19 @@ class Foreign(MotionCase):
         poses = pivot_poses()
         poses[20:23] = [None] * 3
         poses[40:50] = [None] * 10
-        (self.path / 'gaps.csv').write_text(poses_csv(poses, SIGMA_RAD, SIGMA_MM),
+        (self.base / 'gaps.csv').write_text(poses_csv(poses, SIGMA_RAD, SIGMA_MM),
                                             encoding='utf-8')
         self.analyse('gaps.csv', '--max-gap', '0.1', '--filter', 'rts')
         for name in ('motion.csv', 'filtered.csv'):
-            status = [row['status'] for row in rows(self.path / 'gaps-motion' / name)]
+            status = [row['status'] for row in rows(self.base / 'gaps-motion' / name)]
             self.assertEqual(status[19:24], ['ok', 'filled', 'filled', 'filled', 'ok'])
             self.assertEqual(status[40:50], ['gap'] * 10)
 
     def test_free_path_knows_no_acceleration(self):
-        (self.path / 'free.csv').write_text(poses_csv(pivot_poses(), SIGMA_RAD, SIGMA_MM),
+        (self.base / 'free.csv').write_text(poses_csv(pivot_poses(), SIGMA_RAD, SIGMA_MM),
                                             encoding='utf-8')
         self.analyse('free.csv', '--law', 'free', '--path-psd', '1')
-        row = rows(self.path / 'free-motion/motion.csv')[30]
+        row = rows(self.base / 'free-motion/motion.csv')[30]
         self.assertEqual([row['accx_mm_s2'], row['u_accx']], ['', ''])
         self.assertTrue(row['vx_mm_s'])
         self.assertEqual(self.center('free-motion')['acceleration_mm_s2'], [None] * 3)
@@ -103,7 +104,7 @@ class Foreign(MotionCase):
         rng = random.Random(6)
         frames = [seen_markers(pose, rng) for pose in true_poses(60)]
         frames[7][2] = None
-        (self.path / 'trial.c3d').write_bytes(c3d(['P1', 'P2', 'P3', 'P4'], frames))
+        (self.base / 'trial.c3d').write_bytes(c3d(['P1', 'P2', 'P3', 'P4'], frames))
         done = self.analyse('trial.c3d')
         self.assertIn('rigid fit of 4 points', done.stderr)
         # σ of n ≈ 700 − 360 − 6 residuals scatters by 1 / √(2 n); 5 of that.
@@ -123,11 +124,11 @@ class Foreign(MotionCase):
         frames = [seen_markers(a, rng) + seen_markers(b, rng)
                   for a, b in zip(true_poses(60), reversed(true_poses(60)))]
         labels = [f'M{k}' for k in range(8)]
-        (self.path / 'person.c3d').write_bytes(c3d(labels, frames))
+        (self.base / 'person.c3d').write_bytes(c3d(labels, frames))
         refused = self.analyse('person.c3d', code=1)
         self.assertIn('not one rigid body', refused.stderr)
         self.assertIn('--points', refused.stderr)
-        self.assertFalse((self.path / 'person-motion').exists())
+        self.assertFalse((self.base / 'person-motion').exists())
 
     # --points again is another body: both turn, alike but for the noise, about the same point.
     def test_two_clusters(self):
@@ -137,19 +138,19 @@ class Foreign(MotionCase):
                         PLACE_MM) for i in range(60)]
         frames = [seen_markers(a, rng) + seen_markers(b, rng) for a, b in zip(first, second)]
         labels = [f'{name}{k}' for name in ('thigh', 'shank') for k in range(4)]
-        (self.path / 'leg.c3d').write_bytes(c3d(labels, frames))
+        (self.base / 'leg.c3d').write_bytes(c3d(labels, frames))
         done = self.analyse('leg.c3d', '--points', 'thigh*', '--points',
                             'shank0,shank1,shank2,shank3')
         for body in ('body1', 'body2'):
             self.expect_center(self.center(f'leg-motion/{body}'), 0.3)
-        joint = json.loads((self.path / 'leg-motion/joint.json').read_text(encoding='utf-8'))
+        joint = json.loads((self.base / 'leg-motion/joint.json').read_text(encoding='utf-8'))
         self.assertEqual([joint['first'], joint['second']], ['body1', 'body2'])
         self.assertIn('joint of body1 and body2', done.stdout)
 
     def test_what_is_refused(self):
-        (self.path / 'pivot2.csv').write_text(poses_csv(pivot_poses()), encoding='utf-8')
+        (self.base / 'pivot2.csv').write_text(poses_csv(pivot_poses()), encoding='utf-8')
         self.assertIn('--points', self.analyse('pivot2.csv', '--points', 'A', code=2).stderr)
-        (self.path / 'broken.c3d').write_bytes(struct.pack('<BB', 2, 0x50) + bytes(600))
+        (self.base / 'broken.c3d').write_bytes(struct.pack('<BB', 2, 0x50) + bytes(600))
         self.assertIn('broken.c3d: ', self.analyse('broken.c3d', code=2).stderr)
 
 

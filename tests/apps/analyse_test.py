@@ -8,32 +8,9 @@ import json
 import math
 import shutil
 
-from motion_case import MotionCase, main, rows
+from motion_case import MotionCase
+from small_recording import BODY, NOISE, RIG, main, rows
 
-RIG = """format: stereomotion-rig/1
-cameras:
-  - name: cam0
-    image_size_px: [640, 512]
-    intrinsics: {fx_px: 800, fy_px: 800, cx_px: 320, cy_px: 256}
-    distortion: [0, 0, 0, 0, 0]
-    cam_from_world: {qw: 1, qx: 0, qy: 0, qz: 0, tx_mm: 200, ty_mm: 0, tz_mm: 1500}
-  - name: cam1
-    image_size_px: [640, 512]
-    intrinsics: {fx_px: 800, fy_px: 800, cx_px: 320, cy_px: 256}
-    distortion: [0, 0, 0, 0, 0]
-    cam_from_world: {qw: 1, qx: 0, qy: 0, qz: 0, tx_mm: -200, ty_mm: 0, tz_mm: 1500}
-noise: {gain_e_per_dn: 58.8, read_e: 8, black_dn: 0, saturation_dn: 255}
-"""
-BODY = """format: stereomotion-body/1
-name: body
-rods:
-  - name: A
-    ball_diameter_mm: 20
-    balls_mm: [[-150,-60,0],[-110,-60,0],[-55,-60,0],[15,-60,0],[100,-60,0]]
-  - name: B
-    ball_diameter_mm: 20
-    balls_mm: [[-140,60,30],[-60,66,36],[-20,69,39],[35,73.125,43.125],[140,81,51]]
-"""
 RATE_RAD_S = 2.0
 SCENARIO = """format: stereomotion-scenario/1
 name: analyse
@@ -53,27 +30,25 @@ class Analyse(MotionCase):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        for name, text in (('rig.yaml', RIG), ('body.yaml', BODY), ('scenario.yaml', SCENARIO)):
-            (cls.path / name).write_text(text, encoding='utf-8')
-        for command in (('simulate', 'scenario.yaml', '--output', 'rec'),
-                        ('track', '--left', 'rec/cam0', '--right', 'rec/cam1', '--rig',
-                         'rig.yaml', '--body', 'body.yaml', '--output', 'run')):
-            done = cls.run_program(*command)
-            assert done.returncode == 0, done.stderr
+        cls.write(rig=RIG + NOISE, body=BODY)
+        cls.simulate(SCENARIO)
+        done = cls.run_program('track', '--left', 'rec/cam0', '--right', 'rec/cam1', '--rig',
+                               'rig.yaml', '--body', 'body.yaml', '--output', 'run')
+        assert done.returncode == 0, done.stderr
 
     def test_a_run_again(self):
-        kept = {name: (self.path / 'run' / name).read_bytes()
+        kept = {name: (self.base / 'run' / name).read_bytes()
                 for name in ('poses.csv', 'balls.csv', 'detections.csv')}
-        record = json.loads((self.path / 'run/run.json').read_text(encoding='utf-8'))
+        record = json.loads((self.base / 'run/run.json').read_text(encoding='utf-8'))
         self.analyse('run', '--law', 'fixed', '--filter', 'butterworth', '--angles', 'zxy',
                      '--relative-to', '0')
         for name, content in kept.items():
-            self.assertEqual((self.path / 'run' / name).read_bytes(), content, name)
-        after = json.loads((self.path / 'run/run.json').read_text(encoding='utf-8'))
+            self.assertEqual((self.base / 'run' / name).read_bytes(), content, name)
+        after = json.loads((self.base / 'run/run.json').read_text(encoding='utf-8'))
         self.assertIn('6', after.pop('analysis')['filter'])
         record.pop('analysis', None)
         self.assertEqual(after, record)
-        motion = json.loads((self.path / 'run/motion.json').read_text(encoding='utf-8'))
+        motion = json.loads((self.base / 'run/motion.json').read_text(encoding='utf-8'))
         spin = motion['spin_center']
         self.assertEqual(spin['law'], 'fixed')
         # About one axis, z: the centre is free along it and known across it.
@@ -81,23 +56,23 @@ class Analyse(MotionCase):
         for k, truth in enumerate((20, 10)):
             u = math.sqrt(spin['in_world_covariance_mm2'][k][k])
             self.assertLess(abs(spin['in_world_mm'][k] - truth), 5 * u)
-        table = rows(self.path / 'run/motion.csv')
+        table = rows(self.base / 'run/motion.csv')
         self.assertEqual(len(table), 16)
         for row in table:
             self.assertLess(abs(float(row['wz_rad_s']) - RATE_RAD_S), 5 * float(row['u_wz']))
-        self.assertEqual(len(rows(self.path / 'run/filtered.csv')), 16)
-        relative = rows(self.path / 'run/relative.csv')
+        self.assertEqual(len(rows(self.base / 'run/filtered.csv')), 16)
+        relative = rows(self.base / 'run/relative.csv')
         self.assertAlmostEqual(float(relative[0]['qw']), 1)
-        angles = rows(self.path / 'run/angles.csv')
+        angles = rows(self.base / 'run/angles.csv')
         self.assertAlmostEqual(float(angles[15]['angle1_z_rad']), RATE_RAD_S * 15 / 30, places=3)
-        self.assertTrue(rows(self.path / 'run/axes.csv'))
+        self.assertTrue(rows(self.base / 'run/axes.csv'))
 
     def test_same_bytes_again(self):
         self.analyse('run', '--output', 'a')
         self.analyse('run', '--output', 'b')
         for name in ('motion.csv', 'motion.json', 'axes.csv'):
-            self.assertEqual((self.path / 'a' / name).read_bytes(),
-                             (self.path / 'b' / name).read_bytes(), name)
+            self.assertEqual((self.base / 'a' / name).read_bytes(),
+                             (self.base / 'b' / name).read_bytes(), name)
 
     def test_what_is_refused(self):
         for arguments, words in (
@@ -118,45 +93,46 @@ class Analyse(MotionCase):
                 self.assertIn(words, self.analyse(*arguments, code=2).stderr)
 
     def files(self, folder):
-        return {file.name: file.read_bytes() for file in (self.path / folder).iterdir()}
+        return {file.name: file.read_bytes() for file in (self.base / folder).iterdir()}
 
     # What is refused only after the analysis leaves the RUN as it was, too.
     def test_refused_changes_nothing(self):
-        shutil.copytree(self.path / 'run', self.path / 'refused')
+        shutil.copytree(self.base / 'run', self.base / 'refused')
         before = self.files('refused')
-        for arguments in (('--relative-to', '999'), ('--filter', 'butterworth', '--cutoff-hz', '15')):
+        for arguments in (('--relative-to', '999'),
+                          ('--filter', 'butterworth', '--cutoff-hz', '15')):
             self.analyse('refused', '--law', 'accelerated', *arguments, code=2)
             self.assertEqual(self.files('refused'), before, arguments)
             self.analyse('refused', '--output', 'none', *arguments, code=2)
-            self.assertFalse((self.path / 'none').exists())
+            self.assertFalse((self.base / 'none').exists())
 
     # Beside the new motion no file of an earlier analysis stays; files of others do.
     def test_nothing_stale(self):
         self.analyse('run', '--output', 'stale', '--filter', 'butterworth', '--angles', 'zxy',
                      '--relative-to', '0')
         for name in ('joint.json', 'joint_angles.csv', 'notes.csv'):
-            (self.path / 'stale' / name).write_text('', encoding='utf-8')
+            (self.base / 'stale' / name).write_text('', encoding='utf-8')
         self.analyse('run', '--output', 'stale', '--force', '--angles', 'zxy')
         self.assertEqual(sorted(self.files('stale')),
                          ['angles.csv', 'axes.csv', 'motion.csv', 'motion.json', 'notes.csv'])
 
     # Where nothing was analysed before, a file of such a name is somebody else's.
     def test_foreign_files_stay(self):
-        (self.path / 'foreign').mkdir()
-        (self.path / 'foreign/filtered.csv').write_text('mine', encoding='utf-8')
+        (self.base / 'foreign').mkdir()
+        (self.base / 'foreign/filtered.csv').write_text('mine', encoding='utf-8')
         self.analyse('run', '--output', 'foreign')
         self.assertEqual(self.files('foreign')['filtered.csv'], b'mine')
 
     def test_changed_rig_is_told(self):
-        shutil.copytree(self.path / 'run', self.path / 'older')
-        (self.path / 'older/rig.yaml').unlink(missing_ok=True)
-        shutil.copy(self.path / 'rig.yaml', self.path / 'rig.kept')
-        with open(self.path / 'rig.yaml', 'a', encoding='utf-8') as stream:
+        shutil.copytree(self.base / 'run', self.base / 'older')
+        (self.base / 'older/rig.yaml').unlink(missing_ok=True)
+        shutil.copy(self.base / 'rig.yaml', self.base / 'rig.kept')
+        with open(self.base / 'rig.yaml', 'a', encoding='utf-8') as stream:
             stream.write('# changed\n')
         try:
             self.assertIn('SHA-256', self.analyse('older', code=2).stderr)
         finally:
-            shutil.move(self.path / 'rig.kept', self.path / 'rig.yaml')
+            shutil.move(self.base / 'rig.kept', self.base / 'rig.yaml')
         self.analyse('older')
 
     def test_help(self):

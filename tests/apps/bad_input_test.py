@@ -5,44 +5,19 @@ Usage: bad_input_test.py PATH/TO/stereomotion [unittest options]
 The recording is rendered by the program itself; Python's standard library is all it takes.
 """
 
-import csv
 import json
-import os
 import pathlib
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import time
-import unittest
 
-PROGRAM = None
+import small_recording
+from small_recording import BODY, RIG, FolderCase, main, rows, run
+
 FRAMES = 4
 
-RIG = """format: stereomotion-rig/1
-cameras:
-  - name: cam0
-    image_size_px: [640, 512]
-    intrinsics: {fx_px: 800, fy_px: 800, cx_px: 320, cy_px: 256}
-    distortion: [0, 0, 0, 0, 0]
-    cam_from_world: {qw: 1, qx: 0, qy: 0, qz: 0, tx_mm: 200, ty_mm: 0, tz_mm: 1500}
-  - name: cam1
-    image_size_px: [640, 512]
-    intrinsics: {fx_px: 800, fy_px: 800, cx_px: 320, cy_px: 256}
-    distortion: [0, 0, 0, 0, 0]
-    cam_from_world: {qw: 1, qx: 0, qy: 0, qz: 0, tx_mm: -200, ty_mm: 0, tz_mm: 1500}
-"""
-BODY = """format: stereomotion-body/1
-name: body
-rods:
-  - name: A
-    ball_diameter_mm: 20
-    balls_mm: [[-150,-60,0],[-110,-60,0],[-55,-60,0],[15,-60,0],[100,-60,0]]
-  - name: B
-    ball_diameter_mm: 20
-    balls_mm: [[-140,60,30],[-60,66,36],[-20,69,39],[35,73.125,43.125],[140,81,51]]
-"""
 SCENARIO = """format: stereomotion-scenario/1
 name: bad-input
 rig: rig.yaml
@@ -57,32 +32,14 @@ fps: 30
 """ % FRAMES
 
 
-def run(*arguments, cwd, **options):
-    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, text=True,
-                          capture_output=True, timeout=120, check=False, **options)
-
-
-def rows(file):
-    with open(file, newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
-
-
-class BadInput(unittest.TestCase):
+class BadInput(FolderCase):
     """Every test works on a copy of one rendered recording."""
 
     @classmethod
     def setUpClass(cls):
-        cls.base = pathlib.Path(tempfile.mkdtemp(prefix="stereomotion-test-"))
-        (cls.base / "rig.yaml").write_text(RIG)
-        (cls.base / "body.yaml").write_text(BODY)
-        (cls.base / "scenario.yaml").write_text(SCENARIO)
-        made = run("simulate", "scenario.yaml", "--output", "rec", cwd=cls.base)
-        if made.returncode != 0:
-            raise RuntimeError("simulate failed: " + made.stderr)
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.base, ignore_errors=True)
+        super().setUpClass()
+        cls.write(rig=RIG, body=BODY)
+        cls.simulate(SCENARIO)
 
     def setUp(self):
         self.dir = pathlib.Path(tempfile.mkdtemp(dir=self.base))
@@ -309,8 +266,9 @@ class BadInput(unittest.TestCase):
         script = ('mount -t tmpfs -o size=%s tmpfs disk || exit 99; "$@"; code=$?; '
                   'cp -r disk/run copy; exit $code')
         for kib in ("40k",):
-            command = ["unshare", "-rm", "sh", "-c", script % kib, "sh", PROGRAM, "track", "--left",
-                       "cam0", "--right", "cam1", "--body", "body.yaml", "--output", "disk/run"]
+            command = ["unshare", "-rm", "sh", "-c", script % kib, "sh", small_recording.program,
+                       "track", "--left", "cam0", "--right", "cam1", "--body", "body.yaml",
+                       "--output", "disk/run"]
             result = subprocess.run(command, cwd=self.dir, text=True, capture_output=True,
                                     timeout=120, check=False)
             if result.returncode == 99 or "unshare" in result.stderr:
@@ -327,8 +285,8 @@ class BadInput(unittest.TestCase):
             folder.mkdir(parents=True)
             for i in range(count):
                 (folder / f"{i:06}.png").symlink_to(self.dir / camera / f"{i % FRAMES:06}.png")
-        command = [PROGRAM, "track", "--left", "long_cam0/cam0", "--right", "long_cam1/cam1", "--fps",
-                   "30", "--body", "body.yaml", "--output", "run"]
+        command = [small_recording.program, "track", "--left", "long_cam0/cam0", "--right",
+                   "long_cam1/cam1", "--fps", "30", "--body", "body.yaml", "--output", "run"]
         poses = self.dir / "run/poses.csv"
         with subprocess.Popen(command, cwd=self.dir, stdout=subprocess.PIPE,
                               stderr=subprocess.PIPE, text=True) as process:
@@ -347,5 +305,4 @@ class BadInput(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
-    unittest.main(verbosity=1)
+    main()

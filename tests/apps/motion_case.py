@@ -3,14 +3,10 @@
 Noise is seeded, and bounds are quantiles of χ². Python's standard library is all it takes.
 """
 
-import csv
 import math
-import pathlib
 import struct
-import subprocess
-import sys
-import tempfile
-import unittest
+
+from small_recording import FolderCase, run
 
 # Exceeded by three standard normal squares once in 100 000 runs; seeds make it once and for all.
 CHI2_3 = 25.9
@@ -114,35 +110,14 @@ def c3d(labels, frames):
     return header.ljust(512, b'\0') + section.ljust(512 * blocks, b'\0') + data
 
 
-def rows(file):
-    with open(file, encoding='utf-8', newline='') as stream:
-        return list(csv.DictReader(stream))
-
-
-class MotionCase(unittest.TestCase):
-    """A folder for all tests of a class, and the program run in it."""
-    program = None
-
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.path = pathlib.Path(cls.folder.name)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
+class MotionCase(FolderCase):
+    """The program, run in the folder of the class."""
 
     @classmethod
     def run_program(cls, *arguments, **options):
-        return subprocess.run([MotionCase.program, *map(str, arguments)], cwd=cls.path, text=True,
-                              capture_output=True, timeout=300, check=False, **options)
+        return run(*arguments, cwd=cls.base, timeout=300, **options)
 
     def analyse(self, *arguments, code=0):
         done = self.run_program('analyse', *arguments)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
-
-
-def main():
-    MotionCase.program = pathlib.Path(sys.argv.pop(1)).resolve()
-    unittest.main()

@@ -5,47 +5,19 @@ Usage: track_test.py PATH/TO/stereomotion [unittest options]
 The recordings are rendered by the program itself; Python's standard library is all it takes.
 """
 
-import csv
 import json
-import os
 import pathlib
 import re
 import shutil
-import subprocess
-import sys
 import tempfile
-import unittest
 import xml.etree.ElementTree
 
-PROGRAM = None
+from small_recording import BODY, NOISE, RIG, FolderCase, main, rows, run
+
 FRAMES = 12
 # Where no ball of the body ever is, 1.5 m before the cameras; and what it looks like to them.
 LAMP_MM = (-250, 180, 0)
 
-RIG = """format: stereomotion-rig/1
-cameras:
-  - name: cam0
-    image_size_px: [640, 512]
-    intrinsics: {fx_px: 800, fy_px: 800, cx_px: 320, cy_px: 256}
-    distortion: [0, 0, 0, 0, 0]
-    cam_from_world: {qw: 1, qx: 0, qy: 0, qz: 0, tx_mm: 200, ty_mm: 0, tz_mm: 1500}
-  - name: cam1
-    image_size_px: [640, 512]
-    intrinsics: {fx_px: 800, fy_px: 800, cx_px: 320, cy_px: 256}
-    distortion: [0, 0, 0, 0, 0]
-    cam_from_world: {qw: 1, qx: 0, qy: 0, qz: 0, tx_mm: -200, ty_mm: 0, tz_mm: 1500}
-"""
-NOISE = "noise: {gain_e_per_dn: 58.8, read_e: 8, black_dn: 0, saturation_dn: 255}\n"
-BODY = """format: stereomotion-body/1
-name: body
-rods:
-  - name: A
-    ball_diameter_mm: 20
-    balls_mm: [[-150,-60,0],[-110,-60,0],[-55,-60,0],[15,-60,0],[100,-60,0]]
-  - name: B
-    ball_diameter_mm: 20
-    balls_mm: [[-140,60,30],[-60,66,36],[-20,69,39],[35,73.125,43.125],[140,81,51]]
-"""
 SCENARIO = """format: stereomotion-scenario/1
 name: track
 rig: rig.yaml
@@ -62,37 +34,19 @@ fps: 30
 """
 
 
-def run(*arguments, cwd):
-    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, text=True,
-                          capture_output=True, timeout=120, check=False)
-
-
-def rows(file):
-    with open(file, newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
-
-
 def project(camera, p_mm):
     depth = p_mm[2] + 1500
     shift = 200 if camera == "cam0" else -200
     return 320 + 800 * (p_mm[0] + shift) / depth, 256 + 800 * p_mm[1] / depth
 
 
-class Track(unittest.TestCase):
+class Track(FolderCase):
     @classmethod
     def setUpClass(cls):
-        cls.base = pathlib.Path(tempfile.mkdtemp(prefix="stereomotion-test-"))
-        (cls.base / "rig.yaml").write_text(RIG)
-        (cls.base / "body.yaml").write_text(BODY)
+        super().setUpClass()
+        cls.write(rig=RIG, body=BODY)
         for name, rate in (("moving", 1.5), ("resting", 0)):
-            (cls.base / "scenario.yaml").write_text(SCENARIO % (rate, *LAMP_MM, FRAMES))
-            made = run("simulate", "scenario.yaml", "--output", name, cwd=cls.base)
-            if made.returncode != 0:
-                raise RuntimeError("simulate failed: " + made.stderr)
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.base, ignore_errors=True)
+            cls.simulate(SCENARIO % (rate, *LAMP_MM, FRAMES), name)
 
     def setUp(self):
         self.dir = pathlib.Path(tempfile.mkdtemp(dir=self.base))
@@ -301,30 +255,20 @@ rods:
 """
 
 
-class SeveralBodies(unittest.TestCase):
+class SeveralBodies(FolderCase):
     @classmethod
     def setUpClass(cls):
-        cls.dir = pathlib.Path(tempfile.mkdtemp(prefix="stereomotion-test-"))
-        (cls.dir / "rig.yaml").write_text(RIG)
-        (cls.dir / "upper.yaml").write_text(UPPER)
-        (cls.dir / "lower.yaml").write_text(LOWER)
+        super().setUpClass()
+        cls.dir = cls.base
         rods = LOWER.split("rods:\n")[1].replace("name: A", "name: C").replace("name: B", "name: D")
-        (cls.dir / "body.yaml").write_text(UPPER + rods)
-        (cls.dir / "scenario.yaml").write_text(
-            (SCENARIO % (1.5, *LAMP_MM, FRAMES)).split("false_balls:")[0]
-            + f"frames: {FRAMES}\nfps: 30\n")
-        made = run("simulate", "scenario.yaml", "--output", "rec", cwd=cls.dir)
-        if made.returncode != 0:
-            raise RuntimeError("simulate failed: " + made.stderr)
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.dir, ignore_errors=True)
+        cls.write(rig=RIG, upper=UPPER, lower=LOWER, body=UPPER + rods)
+        cls.simulate((SCENARIO % (1.5, *LAMP_MM, FRAMES)).split("false_balls:")[0]
+                     + f"frames: {FRAMES}\nfps: 30\n")
 
     def track(self, output, *bodies, more=()):
         given = [word for body in bodies for word in ("--body", body)]
-        result = run("track", "--left", "rec/cam0", "--right", "rec/cam1", *given, "--output", output,
-                     *more, cwd=self.dir)
+        result = run("track", "--left", "rec/cam0", "--right", "rec/cam1", *given, "--output",
+                     output, *more, cwd=self.dir)
         self.assertEqual(result.returncode, 0, result.stderr)
         return json.loads((self.dir / output / "run.json").read_text())
 
@@ -332,7 +276,8 @@ class SeveralBodies(unittest.TestCase):
         record = self.track("two", "upper.yaml", "lower.yaml")
         self.assertEqual([(b["name"], b["folder"], b["tracked"], b["lost"], b["learned"])
                           for b in record["bodies"]],
-                         [("upper", "upper", FRAMES, {}, False), ("lower", "lower", FRAMES, {}, False)])
+                         [("upper", "upper", FRAMES, {}, False),
+                          ("lower", "lower", FRAMES, {}, False)])
         self.assertEqual(record["frames"]["tracked"], FRAMES)
         self.assertEqual(sum(i["role"] == "body" for i in record["inputs"]), 2)
         self.assertFalse((self.dir / "two/poses.csv").exists())
@@ -372,8 +317,8 @@ class SeveralBodies(unittest.TestCase):
         left = {str(p.relative_to(self.dir / "again"))
                 for p in (self.dir / "again").rglob("*") if p.is_file()}
         self.assertEqual(left - {"upper/body.yaml", "lower/body.yaml"},
-                         {"run.json", "report.html", "rig.yaml", "body.yaml", "poses.csv", "balls.csv",
-                          "detections.csv", "motion.csv", "motion.json", "axes.csv"})
+                         {"run.json", "report.html", "rig.yaml", "body.yaml", "poses.csv",
+                          "balls.csv", "detections.csv", "motion.csv", "motion.json", "axes.csv"})
 
     def test_body_that_is_not_there(self):
         (self.dir / "absent.yaml").write_text(LOWER.replace("lower", "absent").replace(
@@ -385,22 +330,15 @@ class SeveralBodies(unittest.TestCase):
         self.assertTrue(any(w.startswith("body 'absent':") for w in record["warnings"]))
 
 
-class LearnedBody(unittest.TestCase):
+class LearnedBody(FolderCase):
     """Without --body: the body is learned, and its file measures the recording as it was."""
 
     @classmethod
     def setUpClass(cls):
-        cls.dir = pathlib.Path(tempfile.mkdtemp(prefix="stereomotion-test-"))
-        (cls.dir / "rig.yaml").write_text(RIG)
-        (cls.dir / "body.yaml").write_text(BODY)
-        (cls.dir / "scenario.yaml").write_text(SCENARIO % (1.5, *LAMP_MM, FRAMES))
-        made = run("simulate", "scenario.yaml", "--output", "rec", cwd=cls.dir)
-        if made.returncode != 0:
-            raise RuntimeError("simulate failed: " + made.stderr)
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.dir, ignore_errors=True)
+        super().setUpClass()
+        cls.dir = cls.base
+        cls.write(rig=RIG, body=BODY)
+        cls.simulate(SCENARIO % (1.5, *LAMP_MM, FRAMES))
 
     def track(self, output, *more):
         result = run("track", "--left", "rec/cam0", "--right", "rec/cam1", "--output", output,
@@ -430,26 +368,19 @@ class LearnedBody(unittest.TestCase):
                          (self.dir / "plain/poses.csv").read_bytes())
 
 
-class Motion(unittest.TestCase):
+class Motion(FolderCase):
     """The end of a run of one body."""
 
     @classmethod
     def setUpClass(cls):
-        cls.dir = pathlib.Path(tempfile.mkdtemp(prefix="stereomotion-test-"))
-        (cls.dir / "rig.yaml").write_text(RIG + NOISE)
-        (cls.dir / "body.yaml").write_text(BODY)
-        (cls.dir / "scenario.yaml").write_text(SCENARIO % (1.5, *LAMP_MM, FRAMES))
-        made = run("simulate", "scenario.yaml", "--output", "rec", cwd=cls.dir)
-        if made.returncode != 0:
-            raise RuntimeError("simulate failed: " + made.stderr)
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.dir, ignore_errors=True)
+        super().setUpClass()
+        cls.dir = cls.base
+        cls.write(rig=RIG + NOISE, body=BODY)
+        cls.simulate(SCENARIO % (1.5, *LAMP_MM, FRAMES))
 
     def track(self, *more):
-        return run("track", "--left", "rec/cam0", "--right", "rec/cam1", "--body", "body.yaml", *more,
-                   cwd=self.dir)
+        return run("track", "--left", "rec/cam0", "--right", "rec/cam1", "--body", "body.yaml",
+                   *more, cwd=self.dir)
 
     def test_motion_is_written_and_told(self):
         result = self.track("--output", "run")
@@ -493,5 +424,4 @@ class Motion(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
-    unittest.main(verbosity=1)
+    main()

@@ -5,38 +5,22 @@ Usage: two_bodies_test.py PATH/TO/stereomotion [unittest options]
 `simulate` renders each body; an image of both has the brighter of every two pixels.
 """
 
-import csv
 import json
 import math
 import os
-import pathlib
 import shutil
 import struct
 import subprocess
-import sys
-import tempfile
 import time
-import unittest
 import zlib
 
-PROGRAM = None
+import small_recording
+from small_recording import RIG, FolderCase, main, rows, run
+
 FRAMES = 16
 BALLS = 10  # of each body
 MOST_CHI2 = 33.1  # χ² of six degrees of freedom exceeds it once in 100 000 runs
 
-RIG = """format: stereomotion-rig/1
-cameras:
-  - name: cam0
-    image_size_px: [640, 512]
-    intrinsics: {fx_px: 800, fy_px: 800, cx_px: 320, cy_px: 256}
-    distortion: [0, 0, 0, 0, 0]
-    cam_from_world: {qw: 1, qx: 0, qy: 0, qz: 0, tx_mm: 200, ty_mm: 0, tz_mm: 1500}
-  - name: cam1
-    image_size_px: [640, 512]
-    intrinsics: {fx_px: 800, fy_px: 800, cx_px: 320, cy_px: 256}
-    distortion: [0, 0, 0, 0, 0]
-    cam_from_world: {qw: 1, qx: 0, qy: 0, qz: 0, tx_mm: -200, ty_mm: 0, tz_mm: 1500}
-"""
 BODIES = {"thigh": """format: stereomotion-body/1
 name: thigh
 rods:
@@ -72,16 +56,6 @@ frames: {frames}
 fps: 30
 seed: {seed}
 """
-
-
-def run(*arguments, cwd):
-    return subprocess.run([PROGRAM, *map(str, arguments)], cwd=cwd, text=True,
-                          capture_output=True, timeout=120, check=False)
-
-
-def rows(file):
-    with open(file, newline="", encoding="utf-8") as stream:
-        return list(csv.DictReader(stream))
 
 
 def unfilter(kind, row, above):
@@ -197,17 +171,13 @@ def chi2(error, covariance):
     return sum(a * b for a, b in zip(error, solve(covariance, error)))
 
 
-class TwoBodies(unittest.TestCase):
+class TwoBodies(FolderCase):
     @classmethod
     def setUpClass(cls):
-        cls.base = pathlib.Path(tempfile.mkdtemp(prefix="stereomotion-test-"))
+        super().setUpClass()
         cls.dir = cls.base / "ball"
         make_recording(cls.dir, [("thigh", [0, 0.2, 1], -0.7), ("shank", [1, 0, 1], 0.9)])
         cls.result = track(cls.dir, "--output", "run")
-
-    @classmethod
-    def tearDownClass(cls):
-        shutil.rmtree(cls.base, ignore_errors=True)
 
     def test_poses_are_the_truth(self):
         for name in BODIES:
@@ -236,8 +206,9 @@ class TwoBodies(unittest.TestCase):
 
     def test_killed_run_has_whole_rows(self):
         make_long(self.dir, turns=40)
-        track_ = [PROGRAM, "track", "--left", "long/cam0", "--right", "long/cam1", "--body",
-                  "thigh.yaml", "--body", "shank.yaml", "--output", "killed", "--threads", "1"]
+        track_ = [small_recording.program, "track", "--left", "long/cam0", "--right", "long/cam1",
+                  "--body", "thigh.yaml", "--body", "shank.yaml", "--output", "killed",
+                  "--threads", "1"]
         with subprocess.Popen(track_, cwd=self.dir, stdout=subprocess.DEVNULL,
                               stderr=subprocess.DEVNULL) as process:
             wait_for_rows(self.dir / "killed/shank/poses.csv", 20, process)
@@ -291,5 +262,4 @@ class TwoBodies(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PROGRAM = os.path.abspath(sys.argv.pop(1))
-    unittest.main(verbosity=1)
+    main()

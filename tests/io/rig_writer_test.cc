@@ -13,7 +13,7 @@
 
 #include "io_test_support.h"
 #include "rig_test_support.h"
-#include "stereomotion/io/output_error.h"
+#include "stereomotion/core/output_error.h"
 #include "stereomotion/io/rig_export.h"
 #include "stereomotion/io/rig_file.h"
 #include "stereomotion/io/write_file.h"

@@ -14,7 +14,7 @@
 #include "io_test_support.h"
 #include "stereomotion/io/body_folder.h"
 #include "stereomotion/io/csv_rows.h"
-#include "stereomotion/io/output_error.h"
+#include "stereomotion/core/output_error.h"
 #include "stereomotion/io/suggest.h"
 #include "stereomotion/pose/status_words.h"
 

@@ -29,8 +29,9 @@ class SimulatedPairs : public PairSource {
   SimulatedPairs(std::int64_t size, ScenarioAt scenario_at)
       : size_(size), scenario_at_(std::move(scenario_at)) {}
   [[nodiscard]] std::int64_t size() const override { return size_; }
-  void Read(std::int64_t position, FramePair& pair) const override {
+  bool Read(std::int64_t position, FramePair& pair) const override {
     RenderPair(scenario_at_(position), position, pair);
+    return true;
   }
 
  private:
@@ -45,8 +46,9 @@ class StoredPairs : public PairSource {
   [[nodiscard]] std::int64_t size() const override {
     return static_cast<std::int64_t>(pairs_.size());
   }
-  void Read(std::int64_t position, FramePair& pair) const override {
+  bool Read(std::int64_t position, FramePair& pair) const override {
     pair = pairs_[static_cast<std::size_t>(position)];
+    return true;
   }
 
  private:

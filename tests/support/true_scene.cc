@@ -1,11 +1,11 @@
 #include "tests/support/true_scene.h"
 
+#include "stereomotion/core/units.h"
 #include "stereomotion/geometry/so3.h"
 
 namespace stereomotion::testing {
 
 MotionScene TrueScene(const MotionData& data, const Truth& truth, bool one_axis) {
-  constexpr double kSecondsPerNs = 1e-9;
   MotionScene scene;
   scene.exact = data;
   scene.exact.frames.clear();
@@ -19,7 +19,7 @@ MotionScene TrueScene(const MotionData& data, const Truth& truth, bool one_axis)
     MotionTruth motion;
     const auto first_ns = scene.exact.frames.empty() ? frame.pose.timestamp_ns
                                                      : scene.exact.frames.front().pose.timestamp_ns;
-    motion.time_s = kSecondsPerNs * static_cast<double>(frame.pose.timestamp_ns - first_ns);
+    motion.time_s = SecondsBetween(first_ns, frame.pose.timestamp_ns);
     motion.world_from_body = true_frame.world_from_body;
     scene.truth.push_back(motion);
     scene.exact.frames.push_back(frame);

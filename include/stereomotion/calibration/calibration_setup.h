@@ -7,13 +7,15 @@
 
 #include "stereomotion/calibration/target.h"
 #include "stereomotion/camera/camera.h"
+#include "stereomotion/core/camera_settings.h"
 
 namespace stereomotion {
 
 /// Says what is known of one camera before it is calibrated, and what shall be estimated.
 struct CalibrationCamera {
   std::string name;
-  std::string source;  ///< copied to the rig
+  std::string source;              ///< copied to the rig, with
+  CameraSettings source_settings;  ///< how that camera is set
   int width_px = 0;
   int height_px = 0;
   /// Which of fx fy cx cy k1 k2 p1 p2 k3 are estimated. Not given: chosen by what the target can

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "stereomotion/camera/camera.h"
+#include "stereomotion/core/camera_settings.h"
 #include "stereomotion/core/sensor_noise.h"
 #include "stereomotion/geometry/rigid3.h"
 
@@ -14,7 +15,8 @@ namespace stereomotion {
 /// Holds one calibrated camera of a rig.
 struct RigCamera {
   std::string name;
-  std::string source;  ///< where live images come from; may be empty
+  std::string source;              ///< where live images come from; may be empty
+  CameraSettings source_settings;  ///< how that camera is set
   int width_px = 0;
   int height_px = 0;
   CameraModel model;

@@ -37,6 +37,12 @@ struct BallId {
 /// Counts the balls of all rods.
 std::size_t CountBalls(const Body& body);
 
+/// Finds the mean of points; zero where there are none.
+Eigen::Vector3d Centroid(const std::vector<Eigen::Vector3d>& points_mm);
+
+/// Finds the centroid of all balls, body frame.
+Eigen::Vector3d Centroid(const Body& body);
+
 /// Gives the covariance of all balls' coordinates (3M×3M, as `Body::covariance_mm2`): that of the
 /// body, or else the rods' `sigma_mm` on the diagonal. Throws std::invalid_argument where the
 /// body's has not the size of its balls.

@@ -47,6 +47,7 @@ struct RunRecord {
   std::vector<BodyRecord> bodies;
   bool bodies_learned = false;  ///< from the recording; else from body files
   RunSummary summary;
+  std::string live_json;              ///< run.json's object `live` as JSON; empty: recorded images
   std::vector<std::string> warnings;  ///< besides those of `summary`
 };
 

@@ -7,6 +7,7 @@
 
 #include "stereomotion/camera/rig.h"
 #include "stereomotion/core/body.h"
+#include "stereomotion/core/units.h"
 #include "stereomotion/geometry/rigid3.h"
 
 namespace stereomotion {
@@ -29,8 +30,7 @@ using PoseSeries = std::vector<PoseSample>;
 
 /// Tells the time of a sample in seconds after the series' first one.
 inline double SecondsAfterFirst(const PoseSeries& series, std::size_t i) {
-  constexpr double kSecondsPerNs = 1e-9;
-  return kSecondsPerNs * static_cast<double>(series[i].timestamp_ns - series.front().timestamp_ns);
+  return SecondsBetween(series.front().timestamp_ns, series[i].timestamp_ns);
 }
 
 /// Holds the projection of a ball's centre in one image (perspective bias of the sphere removed).

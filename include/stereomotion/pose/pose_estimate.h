@@ -17,6 +17,7 @@ enum class PoseStatus {
   kAmbiguous,         ///< two different poses explain the images about equally well
   kRollUndetermined,  ///< only one rod of several was seen: roll about it is open
   kInconsistent,      ///< the cameras contradict each other far more than in the frames before
+  kDropped,           ///< live: the images came, but measuring was too slow for them
 };
 
 /// Holds the pose of a body in one frame pair.

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "tests/support/fake_v4l2.h"
+
+namespace stereomotion::testing {
+
+/// Answers one ioctl about a device's format, size, rate or region: 0 or −errno; 1: not its kind.
+int AnswerFormatCall(FakeDevice& device, unsigned long request, void* argument);
+/// Likewise of controls.
+int AnswerControlCall(FakeDevice& device, unsigned long request, void* argument);
+/// Likewise of buffers and streaming.
+int AnswerBufferCall(FakeDevice& device, unsigned long request, void* argument);
+
+}  // namespace stereomotion::testing
