@@ -8,6 +8,7 @@
 
 #include "analyse_markers.h"
 #include "motion_run.h"
+#include "stereomotion/core/units.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/motion_reader.h"
 #include "stereomotion/io/run_reader.h"
@@ -17,7 +18,6 @@ namespace stereomotion::app {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr double kDegPerRad = 57.29577951308232;
 
 std::string LowerExtension(const fs::path& file) {
   std::string extension = file.extension().string();
@@ -36,7 +36,7 @@ void GiveNoise(const AnalyseArguments& arguments, const fs::path& file, MotionDa
                     "expected poses without; leave the options away",
                     file.string()));
   }
-  PoseNoise noise{arguments.pose_sigma_deg / kDegPerRad, arguments.pose_sigma_mm};
+  PoseNoise noise{arguments.pose_sigma_deg / kDegreesPerRadian, arguments.pose_sigma_mm};
   if (noise.rotation_rad <= 0 || noise.translation_mm <= 0) {
     const auto estimated = EstimatePoseNoise(series);
     if (!estimated) {
@@ -50,7 +50,7 @@ void GiveNoise(const AnalyseArguments& arguments, const fs::path& file, MotionDa
     warnings.push_back(fmt::format(
         "{}: the poses carry no covariance; {:.3g}° and {:.3g} mm a pose are estimated from their "
         "scatter, and all uncertainties rest on that (or give --pose-sigma-deg, --pose-sigma-mm)",
-        file.string(), kDegPerRad * noise.rotation_rad, noise.translation_mm));
+        file.string(), kDegreesPerRadian * noise.rotation_rad, noise.translation_mm));
   }
   GivePoseNoise(noise, series);
   for (std::size_t i = 0; i < series.size(); ++i) data.frames[i].pose = series[i];

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "run_statistics.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion::app {
 namespace {

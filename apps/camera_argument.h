@@ -8,10 +8,12 @@
 
 namespace stereomotion::app {
 
-/// Says which recorded stream and which camera of the rig one CAM argument means.
+/// Says which stream of images and which camera of the rig one CAM argument means.
 struct ResolvedCamera {
-  std::filesystem::path path;  ///< folder or video
-  int rig_camera = 0;
+  std::filesystem::path path;  ///< folder, video or REC.h5:NAME; a live camera: as `live`
+  int rig_camera = 0;          ///< −1 where the rig has no cameras
+  std::string live;            ///< "aravis:…" or "v4l2:…"; empty: recorded
+  CameraSettings settings;     ///< what rig.yaml's `source:` says of a live camera
 };
 
 struct ResolvedCameras {
@@ -19,8 +21,8 @@ struct ResolvedCameras {
   std::vector<std::string> notes;  ///< what was assumed, for the person
 };
 
-/// Resolves `--left` and `--right` (docs/formats.md, "CAM is one of"). Throws `UserError` for live
-/// cameras and recording files, which this version does not read, and where both mean one camera.
+/// Resolves `--left` and `--right` (docs/formats.md, "CAM is one of"); a rig without cameras stands
+/// for none. Throws `UserError` where both mean one camera.
 ResolvedCameras ResolveCameras(const std::string& left, const std::string& right, const Rig& rig,
                                const std::filesystem::path& rig_file);
 

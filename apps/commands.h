@@ -27,5 +27,8 @@ Run AddAnalyseCommand(CLI::App& app);
 Run AddSimulateCommand(CLI::App& app);
 Run AddConvertCommand(CLI::App& app);
 Run AddPrintTargetCommand(CLI::App& app);
+Run AddCamerasCommand(CLI::App& app);
+Run AddCheckCommand(CLI::App& app);
+Run AddRecordCommand(CLI::App& app);
 
 }  // namespace stereomotion::app

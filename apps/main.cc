@@ -9,8 +9,9 @@
 #include <vector>
 
 #include "commands.h"
+#include "stereomotion/core/device_error.h"
+#include "stereomotion/core/output_error.h"
 #include "stereomotion/core/user_error.h"
-#include "stereomotion/io/output_error.h"
 #include "stereomotion/io/suggest.h"
 #include "version.h"
 
@@ -42,6 +43,9 @@ int RunGuarded(const Run& run, const CommonOptions& options) {
   } catch (const OutputError& error) {
     fmt::print(stderr, "stereomotion: {}\n", error.what());
     return kDeviceFailed;
+  } catch (const DeviceError& error) {
+    fmt::print(stderr, "stereomotion: {}\n", error.what());
+    return kDeviceFailed;
   } catch (const std::exception& error) {
     fmt::print(stderr, "stereomotion: {} (this is a fault of the program)\n", error.what());
     return kDeviceFailed;
@@ -70,7 +74,10 @@ int Main(int argc, char** argv) {
                                                {"analyse", AddAnalyseCommand(app)},
                                                {"simulate", AddSimulateCommand(app)},
                                                {"convert", AddConvertCommand(app)},
-                                               {"print-target", AddPrintTargetCommand(app)}};
+                                               {"print-target", AddPrintTargetCommand(app)},
+                                               {"cameras", AddCamerasCommand(app)},
+                                               {"check", AddCheckCommand(app)},
+                                               {"record", AddRecordCommand(app)}};
   for (const auto& [name, run] : commands) AddCommonOptions(*app.get_subcommand(name), options);
   RequireKnownCommand(argc, argv, commands);
   try {

@@ -5,12 +5,11 @@
 #include <cmath>
 
 #include "motion_run.h"
+#include "stereomotion/core/units.h"
 #include "stereomotion/io/motion_writer.h"
 
 namespace stereomotion::app {
 namespace {
-
-constexpr double kDegPerRad = 57.29577951308232;
 
 std::string Line(const std::string& label, const std::string& value) {
   return fmt::format("  {:<26}{}\n", label, value);
@@ -110,19 +109,20 @@ std::string CenterLines(const MotionAnalysis& analysis) {
 }
 
 std::string AxisLines(const MeanAxis& axis) {
-  std::string text =
-      Line("mean axis in world",
-           fmt::format("{} ± {:.2g}°{}", Vector(axis.axis.in_world, axis.u_direction_rad),
-                       kDegPerRad * axis.u_direction_rad,
-                       axis.axis.accepted ? ""
-                                          : fmt::format(" (of several: deviation {:.3g}°)",
-                                                        kDegPerRad * axis.axis.dispersion_rad)));
+  std::string text = Line(
+      "mean axis in world",
+      fmt::format("{} ± {:.2g}°{}", Vector(axis.axis.in_world, axis.u_direction_rad),
+                  kDegreesPerRadian * axis.u_direction_rad,
+                  axis.axis.accepted ? ""
+                                     : fmt::format(" (of several: deviation {:.3g}°)",
+                                                   kDegreesPerRadian * axis.axis.dispersion_rad)));
   text += Line(
       "  through, mm",
       fmt::format("{} ± {:.2g}", Vector(axis.point_in_world_mm, axis.u_point_mm), axis.u_point_mm));
   text += Line("  pitch, mm/rad", WithSigma(axis.pitch_mm_per_rad, axis.u_pitch));
   if (!axis.common) return text;
-  std::string common = fmt::format("± {:.2g}°", kDegPerRad * axis.common->ucal_direction_rad);
+  std::string common =
+      fmt::format("± {:.2g}°", kDegreesPerRadian * axis.common->ucal_direction_rad);
   if (axis.common->ucal_point_mm) common += fmt::format(", {:.2g} mm", *axis.common->ucal_point_mm);
   if (axis.common->ucal_pitch) common += fmt::format(", {:.2g} mm/rad", *axis.common->ucal_pitch);
   return text + Line("  common part", common);
@@ -144,9 +144,9 @@ std::string SpeedLine(const MotionAnalysis& analysis) {
 std::string RotationLines(const MotionAnalysis& analysis) {
   std::string text =
       Line("rotation", fmt::format("{:.4g}° in all, range {:.4g}°, mean rate {:.4g}°/s",
-                                   kDegPerRad * analysis.total_rad,
-                                   kDegPerRad * analysis.spin.range_of_rotation_rad,
-                                   kDegPerRad * analysis.mean_rate_rad_s));
+                                   kDegreesPerRadian * analysis.total_rad,
+                                   kDegreesPerRadian * analysis.spin.range_of_rotation_rad,
+                                   kDegreesPerRadian * analysis.mean_rate_rad_s));
   return text + SpeedLine(analysis);
 }
 

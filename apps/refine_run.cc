@@ -9,6 +9,7 @@
 
 #include "refine_inputs.h"
 #include "stereomotion/calibration/refine_rig.h"
+#include "stereomotion/core/units.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/rig_writer.h"
 #include "stereomotion/io/write_file.h"
@@ -19,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDegPerRad = 57.29577951308232;
 // Residuals of twenty times the noise: lenses that are a little wrong stay far below.
 constexpr double kNoRigFits = 400;
 
@@ -58,7 +58,7 @@ std::string Table(const RefinedRig& refined, std::size_t num_frames) {
     table += fmt::format("  {:<24} {}\n", name, text);
   };
   line("turned by",
-       Length(motion.change.head<3>(), motion.covariance.topLeftCorner<3, 3>(), kDegPerRad) +
+       Length(motion.change.head<3>(), motion.covariance.topLeftCorner<3, 3>(), kDegreesPerRadian) +
            " deg");
   line("moved by",
        Length(motion.change.tail<3>(), motion.covariance.bottomRightCorner<3, 3>(), 1) + " mm");

@@ -2,19 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
+#include "stereomotion/core/median.h"
+#include "stereomotion/core/units.h"
+#include "stereomotion/geometry/covariance.h"
+
 namespace stereomotion::app {
 namespace {
-
-constexpr double kDegreesPerRadian = 57.29577951308232;
-
-double LargestSigma(const Eigen::Matrix3d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, solver.eigenvalues()[2]));
-}
 
 std::string Line(const char* label, const std::string& value) {
   return fmt::format("  {:<26}{}\n", label, value);
@@ -22,20 +18,26 @@ std::string Line(const char* label, const std::string& value) {
 
 }  // namespace
 
-double Median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+void RunStatistics::Add(const PairMeasurement& measurement) {
+  if (!measurement.pose || poses_++ % keep_every_ != 0) return;
+  const PoseEstimate& pose = *measurement.pose;
+  if (levels_.empty()) levels_.reserve(kMostKept);
+  levels_.push_back({LargestSigma(pose.covariance.topLeftCorner<3, 3>()),
+                     LargestSigma(pose.covariance.bottomRightCorner<3, 3>()),
+                     pose.calibration_u ? pose.calibration_u->tail<3>().maxCoeff() : -1,
+                     pose.rms_px});
+  if (levels_.size() < kMostKept) return;
+  for (std::size_t i = 0; 2 * i < levels_.size(); ++i) levels_[i] = levels_[2 * i];
+  levels_.resize((levels_.size() + 1) / 2);
+  keep_every_ *= 2;
 }
 
-void RunStatistics::Add(const PairMeasurement& measurement) {
-  if (!measurement.pose) return;
-  const PoseEstimate& pose = *measurement.pose;
-  rotation_sigma_rad_.push_back(LargestSigma(pose.covariance.topLeftCorner<3, 3>()));
-  translation_sigma_mm_.push_back(LargestSigma(pose.covariance.bottomRightCorner<3, 3>()));
-  if (pose.calibration_u) calibration_mm_.push_back(pose.calibration_u->tail<3>().maxCoeff());
-  rms_px_.push_back(pose.rms_px);
+std::vector<double> RunStatistics::Of(double Levels::*level) const {
+  std::vector<double> values;
+  for (const Levels& levels : levels_) {
+    if (levels.*level >= 0) values.push_back(levels.*level);
+  }
+  return values;
 }
 
 std::string RunStatistics::Rows(const BodySummary& body, std::int64_t pairs) const {
@@ -45,15 +47,16 @@ std::string RunStatistics::Rows(const BodySummary& body, std::int64_t pairs) con
   for (const auto& [reason, count] : body.lost_by_reason) {
     rows += Line(("  " + reason).c_str(), std::to_string(count));
   }
-  if (!rms_px_.empty()) {
-    rows +=
-        Line("sigma of position, median", fmt::format("{:.4f} mm", Median(translation_sigma_mm_)));
-    rows += Line("sigma of rotation, median",
-                 fmt::format("{:.4f} deg", Median(rotation_sigma_rad_) * kDegreesPerRadian));
-    if (!calibration_mm_.empty()) {
-      rows += Line("calibration part, median", fmt::format("{:.4f} mm", Median(calibration_mm_)));
+  if (!levels_.empty()) {
+    rows += Line("sigma of position, median",
+                 fmt::format("{:.4f} mm", Median(Of(&Levels::translation_sigma_mm))));
+    rows += Line(
+        "sigma of rotation, median",
+        fmt::format("{:.4f} deg", Median(Of(&Levels::rotation_sigma_rad)) * kDegreesPerRadian));
+    if (const auto calibration_mm = Of(&Levels::calibration_mm); !calibration_mm.empty()) {
+      rows += Line("calibration part, median", fmt::format("{:.4f} mm", Median(calibration_mm)));
     }
-    rows += Line("residual rms, median", fmt::format("{:.4f} px", Median(rms_px_)));
+    rows += Line("residual rms, median", fmt::format("{:.4f} px", Median(Of(&Levels::rms_px))));
   }
   if (body.median_chi2_dof) {
     rows += Line("chi2 per dof, median", fmt::format("{:.2f} (1 is ideal)", *body.median_chi2_dof));

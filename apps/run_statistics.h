@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -8,7 +9,8 @@
 
 namespace stereomotion::app {
 
-/// Collects what the table at the end of a run shows of one body.
+/// Collects what the table at the end of a run shows of one body, in a memory that does not grow
+/// with the run: of more poses than it can hold, every second, fourth, … (medians to about 1 %).
 class RunStatistics {
  public:
   void Add(const PairMeasurement& measurement);
@@ -17,17 +19,20 @@ class RunStatistics {
   [[nodiscard]] std::string Rows(const BodySummary& body, std::int64_t pairs) const;
 
  private:
-  // One number a pose: the largest principal standard deviation.
-  std::vector<double> rotation_sigma_rad_;
-  std::vector<double> translation_sigma_mm_;
-  std::vector<double> calibration_mm_;
-  std::vector<double> rms_px_;
+  /// The largest principal standard deviations of one pose.
+  struct Levels {
+    double rotation_sigma_rad = 0, translation_sigma_mm = 0;
+    double calibration_mm = -1;  ///< −1: none stated
+    double rms_px = 0;
+  };
+  static constexpr std::size_t kMostKept = 1 << 14;
+  [[nodiscard]] std::vector<double> Of(double Levels::*level) const;
+
+  std::vector<Levels> levels_;
+  std::int64_t poses_ = 0, keep_every_ = 1;
 };
 
 /// Writes the table for a person: pairs, what was measured of each body, speed.
 std::string RunTable(const RunSummary& summary, const std::vector<RunStatistics>& bodies);
-
-/// Finds the median; nothing to say of an empty list, so that one is 0.
-double Median(std::vector<double> values);
 
 }  // namespace stereomotion::app

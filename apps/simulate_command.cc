@@ -9,7 +9,7 @@
 #include "number_within.h"
 #include "progress.h"
 #include "stereomotion/core/user_error.h"
-#include "stereomotion/io/output_error.h"
+#include "stereomotion/core/output_error.h"
 #include "stereomotion/io/scenario_file.h"
 #include "stereomotion/simulation/write_recording.h"
 #include "stop_signal.h"

@@ -8,8 +8,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "stereomotion/core/output_error.h"
 #include "stereomotion/core/user_error.h"
-#include "stereomotion/io/output_error.h"
 #include "stereomotion/pose/body_confusion.h"
 
 namespace stereomotion::app {

@@ -1,12 +1,66 @@
 #include <memory>
 
 #include "commands.h"
+#include "live_options.h"
 #include "number_within.h"
+#include "stereomotion/core/user_error.h"
 #include "track_inputs.h"
 #include "track_run.h"
 
 namespace stereomotion::app {
 namespace {
+
+void AddCameraOptions(CLI::App& track, TrackOptions& options) {
+  auto* left = track.add_option("--left", options.left,
+                                "The left camera: folder of images, video, REC.h5:NAME, aravis:ID, "
+                                "v4l2:DEVICE or a name of the rig");
+  auto* right = track.add_option("--right", options.right, "The right camera");
+  track
+      .add_option("--recording", options.recording,
+                  "A recording file (….h5) instead of --left and --right")
+      ->check(NotEmpty())
+      ->excludes(left)
+      ->excludes(right);
+}
+
+void RequireCameras(const TrackOptions& options) {
+  if (!options.recording.empty()) return;
+  const char* missing = options.left.empty() ? "--left" : options.right.empty() ? "--right" : "";
+  if (*missing == '\0') return;
+  throw UserError(std::string(missing) +
+                  " is required: expected --left CAM and --right CAM, or --recording REC.h5");
+}
+
+void AddRecordedOptions(CLI::App& track, TrackOptions& options) {
+  auto* fps =
+      track.add_option("--fps", options.fps, "Frames a second, where the recording has no times");
+  fps->check(NumberWithin(kLowestFps, kHighestFps));
+  auto* start = track.add_option("--start", options.start, "First pair, from 0");
+  start->check(WholeNumberWithin(0, kMostFrames));
+  options.recorded_only = {fps, start};
+}
+
+// What is asked of live cameras, and where poses go.
+void AddLiveRunOptions(CLI::App& track, TrackOptions& options) {
+  constexpr double kShortest_s = 1, kLongest_s = 600;
+  track
+      .add_option("--stream", options.stream,
+                  "Sends poses as JSON lines at once: - (standard output), tcp://HOST:PORT "
+                  "(listens), udp://HOST:PORT, zmq+tcp://HOST:PORT")
+      ->check(NotEmpty());
+  AddLiveOptions(track, options.live);
+  auto* record = track.add_option("--record", options.record,
+                                  "Records the images at the same time: REC.h5, or a folder");
+  auto* learn = track.add_option("--learn-s", options.learn_s,
+                                 "Without --body: so long is recorded first to learn the bodies");
+  record->check(NotEmpty())->group("Live cameras");
+  learn->check(NumberWithin(kShortest_s, kLongest_s))
+      ->capture_default_str()
+      ->excludes(track.get_option("--body"))
+      ->group("Live cameras");
+  options.live.options.insert(options.live.options.end(), {record, learn});
+  options.recorded_only.push_back(track.get_option("--learn-mask"));
+}
 
 // What changes how the images are measured.
 void AddMeasuringOptions(CLI::App& track, TrackOptions& options) {
@@ -58,10 +112,8 @@ void AddBodyOptions(CLI::App& track, TrackOptions& options) {
 
 Run AddTrackCommand(CLI::App& app) {
   auto options = std::make_shared<TrackOptions>();
-  CLI::App* track = app.add_subcommand("track", "Measures bodies in recorded image pairs");
-  track->add_option("--left", options->left, "Images of the left camera: folder, video or a name")
-      ->required();
-  track->add_option("--right", options->right, "Images of the right camera")->required();
+  CLI::App* track = app.add_subcommand("track", "Measures bodies in image pairs, recorded or live");
+  AddCameraOptions(*track, *options);
   track->add_option("--rig", options->rig, "The calibrated cameras")->capture_default_str();
   track
       ->add_option("--body", options->bodies,
@@ -70,10 +122,7 @@ Run AddTrackCommand(CLI::App& app) {
       ->allow_extra_args(false);
   track->add_option("--output", options->output,
                     "Folder for the results; run-DATE-TIME by default");
-  track->add_option("--fps", options->fps, "Frames a second, where the recording has no times")
-      ->check(NumberWithin(kLowestFps, kHighestFps));
-  track->add_option("--start", options->start, "First pair, from 0")
-      ->check(WholeNumberWithin(0, kMostFrames));
+  AddRecordedOptions(*track, *options);
   track->add_option("--count", options->count, "How many pairs")
       ->check(WholeNumberWithin(1, kMostFrames));
   track->add_option("--threads", options->threads, "Threads; 0: one a core. Results do not change")
@@ -81,6 +130,7 @@ Run AddTrackCommand(CLI::App& app) {
       ->capture_default_str();
   AddMeasuringOptions(*track, *options);
   AddBodyOptions(*track, *options);
+  AddLiveRunOptions(*track, *options);
   track->add_flag("--force", options->force, "Overwrite an existing output");
   track->footer(
       "Examples:\n"
@@ -91,8 +141,14 @@ Run AddTrackCommand(CLI::App& app) {
       "  stereomotion track --left cam0 --right cam1 --body body.yaml --search-every 10\n"
       "  stereomotion track --left empty/cam0 --right empty/cam1 --body body.yaml --learn-mask "
       "mask.yaml\n"
+      "  stereomotion track --left aravis:CAM-1 --right aravis:CAM-2 --body body.yaml --record "
+      "take1.h5\n"
+      "  stereomotion track --recording take1.h5 --body body.yaml --stream tcp://127.0.0.1:5555\n"
       "  stereomotion track --left cam0 --right cam1 --body body.yaml --mask mask.yaml");
-  return [options](const CommonOptions& common) { return RunTrack(*options, common); };
+  return [options](const CommonOptions& common) {
+    RequireCameras(*options);
+    return RunTrack(*options, common);
+  };
 }
 
 }  // namespace stereomotion::app

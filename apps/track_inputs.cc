@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "camera_argument.h"
+#include "live_pair.h"
+#include "stereomotion/capture/recorder.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/body_file.h"
 #include "stereomotion/io/body_folder.h"
@@ -58,7 +59,7 @@ void LoadMasks(const TrackOptions& options, TrackInputs& inputs) {
   inputs.warnings = MaskWarnings(setup, options.mask);
 }
 
-MeasureOptions MakeOptions(const TrackOptions& options) {
+MeasureOptions MakeOptions(const TrackOptions& options, bool is_live) {
   constexpr double kUsPerMs = 1000;
   MeasureOptions measure;
   const auto& names = DetectorNames();
@@ -68,7 +69,7 @@ MeasureOptions MakeOptions(const TrackOptions& options) {
   measure.exposure_us = kUsPerMs * options.exposure_ms;
   measure.threads = options.threads;
   measure.first = options.start;
-  measure.count = options.count;
+  measure.count = is_live ? -1 : options.count;  // live: the cameras end after so many
   return measure;
 }
 
@@ -102,6 +103,38 @@ void CheckFirstImages(const TrackInputs& inputs, const ResolvedCameras& cameras,
   }
 }
 
+// A recording file's cameras: those that the rig names, in its order, else the first two.
+void NameRecorded(const Rig& rig, TrackOptions& options) {
+  if (options.recording.empty()) return;
+  const std::vector<std::string> found = CamerasOfRecording(options.recording);
+  std::vector<std::string> names;
+  for (const RigCamera& camera : rig.cameras) {
+    const bool has = std::find(found.begin(), found.end(), camera.name) != found.end();
+    if (has) names.push_back(camera.name);
+  }
+  if (names.size() < 2) names = found;
+  if (names.size() < 2) {
+    throw UserError(fmt::format("{}: found {} camera{}, expected two", options.recording,
+                                names.size(), names.size() == 1 ? "" : "s"));
+  }
+  options.left = options.recording + ":" + names[0];
+  options.right = options.recording + ":" + names[1];
+}
+
+void CheckKindOfOptions(const TrackOptions& options, bool is_live) {
+  if (!is_live) return RefuseLiveOptions(options.live);
+  for (const CLI::Option* option : options.recorded_only) {
+    if (option->count() == 0) continue;
+    throw UserError(option->get_name() +
+                    ": is for recorded images, but the cameras are live; leave it out, or "
+                    "`stereomotion record` first and give the recording");
+  }
+}
+
+void Append(const std::vector<std::string>& more, std::vector<std::string>& list) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
 }  // namespace
 
 const std::vector<std::string>& DetectorNames() {
@@ -109,28 +142,35 @@ const std::vector<std::string>& DetectorNames() {
   return names;
 }
 
-TrackInputs LoadTrackInputs(const TrackOptions& options) {
-  TrackInputs inputs;
-  inputs.setup.rig = LoadRig(options);
-  inputs.setup.bodies = LoadBodies(options);
-  const ResolvedCameras cameras =
-      ResolveCameras(options.left, options.right, inputs.setup.rig, options.rig);
-  inputs.setup.left_camera = cameras.left.rig_camera;
-  inputs.setup.right_camera = cameras.right.rig_camera;
-  for (const auto& note : cameras.notes) spdlog::info(note);
+void OpenRecorded(const TrackOptions& options, const ResolvedCameras& cameras,
+                  TrackInputs& inputs) {
   inputs.recording = OpenRecording(cameras.left.path, cameras.right.path, {options.fps, true});
   inputs.camera_paths = {cameras.left.path, cameras.right.path};
   const RecordingReport& report = inputs.recording->report();
   for (const auto& warning : report.warnings) spdlog::warn(warning);
   CheckRange(options, inputs.recording->size());
-  inputs.options = MakeOptions(options);
-  LoadMasks(options, inputs);
-  for (const auto& more :
-       {ExposureWarnings(report, options.exposure_ms), CheckBodiesDiffer(inputs.setup.bodies)}) {
-    inputs.warnings.insert(inputs.warnings.end(), more.begin(), more.end());
-  }
-  for (const auto& warning : inputs.warnings) spdlog::warn(warning);
   CheckFirstImages(inputs, cameras, options);
+}
+
+TrackInputs LoadTrackInputs(TrackOptions& options) {
+  TrackInputs inputs;
+  inputs.setup.rig = LoadRig(options);
+  inputs.setup.bodies = LoadBodies(options);
+  NameRecorded(inputs.setup.rig, options);
+  inputs.cameras = ResolveCameras(options.left, options.right, inputs.setup.rig, options.rig);
+  inputs.setup.left_camera = inputs.cameras.left.rig_camera;
+  inputs.setup.right_camera = inputs.cameras.right.rig_camera;
+  for (const auto& note : inputs.cameras.notes) spdlog::info(note);
+  inputs.is_live = AreLive(inputs.cameras);
+  CheckKindOfOptions(options, inputs.is_live);
+  inputs.options = MakeOptions(options, inputs.is_live);
+  if (!inputs.is_live) OpenRecorded(options, inputs.cameras, inputs);
+  LoadMasks(options, inputs);
+  if (!inputs.is_live) {
+    Append(ExposureWarnings(inputs.recording->report(), options.exposure_ms), inputs.warnings);
+  }
+  Append(CheckBodiesDiffer(inputs.setup.bodies), inputs.warnings);
+  for (const auto& warning : inputs.warnings) spdlog::warn(warning);
   return inputs;
 }
 

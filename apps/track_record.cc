@@ -31,11 +31,18 @@ void AddMask(const TrackInputs& inputs, int camera, const ImageMask& mask, RunRe
   }
 }
 
+void CountFrames(const RecordingReport& report, RunRecord& record) {
+  record.left_frames = report.left_frames;
+  record.right_frames = report.right_frames;
+  record.unpaired_left = report.unpaired_left;
+  record.unpaired_right = report.unpaired_right;
+  record.paired_by_time = report.paired_by_time;
+}
+
 }  // namespace
 
 RunRecord StartRecord(const TrackInputs& inputs, const TrackOptions& options,
                       const CommonOptions& common) {
-  const RecordingReport& report = inputs.recording->report();
   const auto& cameras = inputs.setup.rig.cameras;
   RunRecord record;
   record.version = kVersion;
@@ -43,11 +50,7 @@ RunRecord StartRecord(const TrackInputs& inputs, const TrackOptions& options,
   record.started = UtcNow();
   record.left_camera = cameras[static_cast<std::size_t>(inputs.setup.left_camera)].name;
   record.right_camera = cameras[static_cast<std::size_t>(inputs.setup.right_camera)].name;
-  record.left_frames = report.left_frames;
-  record.right_frames = report.right_frames;
-  record.unpaired_left = report.unpaired_left;
-  record.unpaired_right = report.unpaired_right;
-  record.paired_by_time = report.paired_by_time;
+  if (inputs.recording != nullptr) CountFrames(inputs.recording->report(), record);
   const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   record.detector = options.detector;
   record.search_every = inputs.options.search_every;
@@ -63,11 +66,11 @@ void AddBodies(const TrackInputs& inputs, const TrackOptions& options, RunRecord
   for (const Body& body : inputs.setup.bodies) {
     record.bodies.push_back({body.name, inputs.setup.bodies.size() > 1 ? body.name : "."});
   }
-  record.warnings = inputs.recording->report().warnings;
+  if (inputs.recording != nullptr) record.warnings = inputs.recording->report().warnings;
   record.warnings.insert(record.warnings.end(), inputs.warnings.begin(), inputs.warnings.end());
 }
 
-void AddInputs(const TrackOptions& options, const Recording& recording, RunRecord& record) {
+void AddInputs(const TrackOptions& options, const TrackInputs& inputs, RunRecord& record) {
   record.inputs = {{"rig", options.rig, Sha256OfFile(options.rig)}};
   for (const std::string& body : options.bodies) {
     record.inputs.push_back({"body", body, Sha256OfFile(body)});
@@ -77,11 +80,28 @@ void AddInputs(const TrackOptions& options, const Recording& recording, RunRecor
   }
   for (const auto& [side, role, path] :
        {std::tuple{Side::kLeft, "left", options.left}, {Side::kRight, "right", options.right}}) {
-    const std::string images = recording.InputDigest(side);
+    if (inputs.recording == nullptr) {
+      record.inputs.push_back({role, path, ""});
+      continue;
+    }
+    const std::string images = inputs.recording->InputDigest(side);
     if (!images.empty()) record.inputs.push_back({role, path, images});
-    for (const fs::path& file : recording.InputFiles(side)) {
+    for (const fs::path& file : inputs.recording->InputFiles(side)) {
       record.inputs.push_back({role, file.string(), Sha256OfFile(file)});
     }
+  }
+}
+
+void AddLive(const LiveReport& report, RunRecord& record) {
+  record.left_frames = report.cameras[0].counts.frames;
+  record.right_frames = report.cameras[1].counts.frames;
+  // The last images may have come after the end of the pairing.
+  record.unpaired_left = record.left_frames - report.pairs;
+  record.unpaired_right = record.right_frames - report.pairs;
+  record.paired_by_time = true;
+  for (const std::string& warning : report.warnings) {
+    const auto end = record.warnings.end();
+    if (std::find(record.warnings.begin(), end, warning) == end) record.warnings.push_back(warning);
   }
 }
 

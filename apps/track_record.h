@@ -1,6 +1,7 @@
 #pragma once
 
 #include "commands.h"
+#include "stereomotion/capture/live_report.h"
 #include "stereomotion/io/run_record.h"
 #include "track_inputs.h"
 
@@ -15,6 +16,9 @@ void AddBodies(const TrackInputs& inputs, const TrackOptions& options, RunRecord
 
 /// Lists the files that were read, with their check sums: at the end of the run, when those of the
 /// images are known.
-void AddInputs(const TrackOptions& options, const Recording& recording, RunRecord& record);
+void AddInputs(const TrackOptions& options, const TrackInputs& inputs, RunRecord& record);
+
+/// Adds what live cameras delivered, at the end of the run.
+void AddLive(const LiveReport& report, RunRecord& record);
 
 }  // namespace stereomotion::app

@@ -8,9 +8,9 @@
 #include <sstream>
 
 #include "motion_run.h"
+#include "stereomotion/core/output_error.h"
 #include "stereomotion/io/body_folder.h"
 #include "stereomotion/io/body_writer.h"
-#include "stereomotion/io/output_error.h"
 #include "stereomotion/io/rig_writer.h"
 #include "stereomotion/io/run_report.h"
 #include "stereomotion/io/write_file.h"
@@ -135,7 +135,7 @@ void WriteReport(const fs::path& folder, const TrackInputs& inputs, const RunRec
 
 int Finish(const fs::path& folder, const RunSummary& summary,
            const std::vector<BodyCourse>& courses, const MotionOutcome& motion,
-           const CommonOptions& common) {
+           const CommonOptions& common, const std::string& problem, std::FILE* out) {
   for (const auto& warning : summary.warnings) spdlog::warn(warning);
   if (summary.interrupted) spdlog::warn("interrupted: the files hold the pairs up to here");
   std::vector<RunStatistics> statistics;
@@ -143,9 +143,13 @@ int Finish(const fs::path& folder, const RunSummary& summary,
   for (const BodyCourse& course : courses) statistics.push_back(course.statistics);
   for (const BodySummary& body : summary.bodies) poses += body.poses;
   if (!common.quiet) {
-    fmt::print("{}{}{}", RunTable(summary, statistics), motion.bodies, motion.joints);
+    fmt::print(out, "{}{}{}", RunTable(summary, statistics), motion.bodies, motion.joints);
   }
-  fmt::print("{}\n", folder.string());
+  fmt::print(out, "{}\n", folder.string());
+  if (!problem.empty()) {
+    fmt::print(stderr, "stereomotion: {}\n", problem);
+    return kDeviceFailed;
+  }
   if (poses > 0 || summary.interrupted) return kDone;
   fmt::print(stderr, "stereomotion: no pose in the whole recording ({}); see {}\n",
              MostFrequentLoss(summary), (folder / "poses.csv").string());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -42,9 +43,10 @@ void WriteReport(const std::filesystem::path& folder, const TrackInputs& inputs,
                  const RunRecord& record, const std::vector<BodyCourse>& courses,
                  const std::string& joints);
 
-/// Tells the end of a run; returns the exit code.
+/// Tells the end of a run on `out`; returns the exit code. `problem`: why live cameras or their
+/// recording did not end as asked, or empty.
 int Finish(const std::filesystem::path& folder, const RunSummary& summary,
            const std::vector<BodyCourse>& courses, const MotionOutcome& motion,
-           const CommonOptions& common);
+           const CommonOptions& common, const std::string& problem, std::FILE* out);
 
 }  // namespace stereomotion::app

@@ -4,16 +4,17 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
+#include <cstdio>
 #include <ctime>
+#include <memory>
 #include <optional>
 
 #include "learn_body_run.h"
+#include "learn_live_run.h"
 #include "learn_mask_run.h"
-#include "progress.h"
-#include "stereomotion/io/output_error.h"
+#include "stereomotion/core/output_error.h"
 #include "stereomotion/io/run_writer.h"
-#include "stop_signal.h"
+#include "track_measure.h"
 #include "track_record.h"
 #include "track_results.h"
 
@@ -22,52 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kReasonsToTell = 3;
-
 std::string DefaultRunName() {
   return fmt::format("run-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
-}
-
-// Tells what is wrong with the first pairs that cannot be used.
-class UnreadablePairs {
- public:
-  void Tell(const PairMeasurement& measurement, const Progress& progress) {
-    if (measurement.detail.empty() || measurement.body != 0 || ++count_ > kReasonsToTell) return;
-    progress.Clear();
-    spdlog::warn("frame {} is lost: {}{}", measurement.frame, measurement.detail,
-                 count_ == kReasonsToTell ? " (more such frames are only counted)" : "");
-  }
-
- private:
-  std::int64_t count_ = 0;
-};
-
-// Measures into `writer`; a full disk ends the run early and is told by the result.
-std::optional<OutputError> Measure(const TrackInputs& inputs, const CommonOptions& common,
-                                   RunWriter& writer, std::vector<BodyCourse>& courses,
-                                   RunSummary& summary) {
-  const std::int64_t rest = inputs.recording->size() - inputs.options.first;
-  const std::int64_t wanted = inputs.options.count;
-  Progress progress(wanted < 0 ? rest : std::min(wanted, rest), common.quiet);
-  std::optional<OutputError> failure;
-  UnreadablePairs unreadable;
-  const MeasurementSink sink = [&](const PairMeasurement& measurement) {
-    unreadable.Tell(measurement, progress);
-    try {
-      writer.Write(measurement);
-    } catch (const OutputError& error) {
-      failure = error;
-      return false;
-    }
-    BodyCourse& course = courses[static_cast<std::size_t>(measurement.body)];
-    course.statistics.Add(measurement);
-    course.trace.Add(measurement);
-    if (&course == &courses.back()) progress.Step();
-    return true;
-  };
-  const std::atomic<bool>& stop = CatchStopSignals();
-  summary = MeasureRecording(*inputs.recording, inputs.setup, inputs.options, sink, &stop);
-  return failure;
 }
 
 // An empty folder that was made for nothing is taken back.
@@ -97,22 +54,86 @@ std::vector<BodyCourse> StartCourses(const TrackInputs& inputs) {
   return courses;
 }
 
+std::vector<std::string> NamesOfBodies(const TrackInputs& inputs) {
+  std::vector<std::string> names;
+  for (const Body& body : inputs.setup.bodies) names.push_back(body.name);
+  return names;
+}
+
+/// Everything of a run that lives as long as it.
+struct Parts {
+  std::unique_ptr<LiveRun> live;
+  std::unique_ptr<PoseStream> stream;
+};
+
+Parts OpenParts(const TrackInputs& inputs, const TrackOptions& options, const CommonOptions& common,
+                const RunRecord& record) {
+  Parts parts;
+  if (inputs.is_live) {
+    LiveRunSetup run{inputs.setup, inputs.cameras, options.live, options.rig, options.record};
+    run.arguments.live.count = options.count;
+    run.overwrite = options.force;
+    run.quiet = common.quiet;
+    parts.live = std::make_unique<LiveRun>(run);
+  }
+  if (options.stream.empty()) return parts;
+  const StreamHello hello{
+      {record.left_camera, record.right_camera}, NamesOfBodies(inputs), inputs.is_live};
+  parts.stream = std::make_unique<PoseStream>(options.stream, hello);
+  return parts;
+}
+
+std::string EndOf(const Parts& parts, const RunRecord& record) {
+  if (parts.live != nullptr) return parts.live->report().end;
+  return record.summary.interrupted ? "interrupted" : "done";
+}
+
+// Ends the stream and puts what the cameras did into the record.
+void Close(const Parts& parts, RunRecord& record) {
+  std::optional<std::int64_t> lost_lines;
+  if (parts.stream != nullptr) {
+    parts.stream->End(EndOf(parts, record));
+    lost_lines = parts.stream->lost_lines();
+  }
+  if (parts.live == nullptr) return;
+  AddLive(parts.live->report(), record);
+  record.live_json = parts.live->Json(lost_lines);
+  if (!parts.live->problem().empty()) record.state = "camera_failed";
+}
+
+// Reading hours of poses again would take long, and must not: the cameras' program is to end.
+bool IsSmallEnough(const Parts& parts, const fs::path& folder, RunRecord& record) {
+  constexpr std::int64_t kMostPairs = 20000;
+  if (parts.live == nullptr || record.summary.pairs_read <= kMostPairs) return true;
+  record.warnings.push_back(
+      fmt::format("more than {} pairs: the motion is not worked out at once; run `stereomotion "
+                  "analyse {}`",
+                  kMostPairs, folder.string()));
+  spdlog::warn(record.warnings.back());
+  return false;
+}
+
 // The report last: `done` says that all files are there.
 int MeasureInto(const fs::path& folder, const TrackInputs& inputs, const TrackOptions& options,
                 const CommonOptions& common, RunRecord& record) {
+  Parts parts = OpenParts(inputs, options, common, record);
   RunWriter writer(folder, {inputs.setup.bodies, record.left_camera, record.right_camera},
                    /*overwrite=*/true, record);
   std::vector<BodyCourse> courses = StartCourses(inputs);
   MotionOutcome motion;
   try {
     CopySetup(folder, options, inputs.setup);
-    const auto failure = Measure(inputs, common, writer, courses, record.summary);
-    AddInputs(options, *inputs.recording, record);
-    if (failure) throw OutputError(*failure);
+    const auto failure = Measure({inputs, common, parts.live.get(), parts.stream.get()}, writer,
+                                 courses, record.summary);
     if (record.summary.interrupted) record.state = "interrupted";
+    Close(parts, record);
+    AddInputs(options, inputs, record);
+    if (failure) throw OutputError(*failure);
     writer.WriteRecord(record);  // a second interrupt may end what follows
-    if (options.motion) motion = AnalyseCourses(folder, inputs.setup, courses, record);
-    if (!record.summary.interrupted) record.state = "done";
+    if (options.motion && IsSmallEnough(parts, folder, record)) {
+      motion = AnalyseCourses(folder, inputs.setup, courses, record);
+    }
+    if (record.state == "running") record.state = "done";
     WriteReport(folder, inputs, record, courses, motion.joints);
   } catch (const OutputError&) {
     record.state = "output_failed";
@@ -120,19 +141,25 @@ int MeasureInto(const fs::path& folder, const TrackInputs& inputs, const TrackOp
     throw;
   }
   writer.WriteRecord(record);
-  return Finish(folder, record.summary, courses, motion, common);
+  return Finish(folder, record.summary, courses, motion, common,
+                parts.live != nullptr ? parts.live->problem() : "",
+                options.stream == "-" ? stderr : stdout);
 }
 
 }  // namespace
 
-int RunTrack(const TrackOptions& options, const CommonOptions& common) {
+int RunTrack(const TrackOptions& given, const CommonOptions& common) {
+  TrackOptions options = given;
   TrackInputs inputs = LoadTrackInputs(options);
   if (!options.learn_mask.empty()) return RunLearnMask(options, inputs, common);
+  if (!options.stream.empty()) ParseStreamAddress(options.stream);  // now, not after learning
   const FolderOfRun folder(options.output.empty() ? DefaultRunName() : options.output,
                            options.force);
   RunRecord record = StartRecord(inputs, options, common);
   if (options.bodies.empty()) {
-    if (const auto failed = LearnBodiesOf(options, inputs, common)) return *failed;
+    const auto failed = inputs.is_live ? LearnBodiesLive(folder.path(), options, inputs, common)
+                                       : LearnBodiesOf(options, inputs, common);
+    if (failed) return *failed;
   }
   AddBodies(inputs, options, record);
   return MeasureInto(folder.path(), inputs, options, common, record);

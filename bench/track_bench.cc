@@ -36,12 +36,13 @@ class ToAndFro : public PairSource {
     }
   }
   [[nodiscard]] std::int64_t size() const override { return size_; }
-  void Read(std::int64_t position, FramePair& pair) const override {
+  bool Read(std::int64_t position, FramePair& pair) const override {
     constexpr std::int64_t kPeriod = 2 * kRendered - 2;
     const std::int64_t phase = position % kPeriod;
     pair = pairs_[static_cast<std::size_t>(std::min(phase, kPeriod - phase))];
     pair.left.index = pair.right.index = position;
     pair.left.timestamp_ns = pair.right.timestamp_ns = 1'000'000'000 + position * 5'000'000;
+    return true;
   }
 
  private:

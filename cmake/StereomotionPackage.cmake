@@ -15,7 +15,8 @@ retro-reflective balls is and how it is turned, with an uncertainty on every num
 
 # What cmake/stereomotionConfig.cmake.in looks for.
 set(library_packages libeigen3-dev libopencv-dev libyaml-cpp-dev libtomlplusplus-dev
-    nlohmann-json3-dev libfmt-dev libspdlog-dev libssl-dev zlib1g-dev libapriltag-dev libceres-dev)
+    nlohmann-json3-dev libfmt-dev libspdlog-dev libssl-dev zlib1g-dev libapriltag-dev libceres-dev
+    libaravis-dev libusb-1.0-0-dev libhdf5-dev pkg-config)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libstereomotion-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 list(JOIN library_packages ", " depends)

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that stereomotion needs, those only that are missing; asks nothing.
-# usage: scripts/install_deps.sh [--lint] [--plots] [--fuzz]
+# usage: scripts/install_deps.sh [--tests] [--lint] [--plots] [--fuzz]
+#   --tests   also what the tests of live cameras and recording files need
 #   --lint    also what preset lint and pre-commit need
 #   --plots   also what draws the plots of the documentation (scripts/accuracy.sh)
 #   --fuzz    also what scripts/fuzz.sh needs
@@ -11,15 +12,19 @@ packages=(
   ca-certificates g++ cmake ninja-build ccache python3 dpkg-dev file
   libeigen3-dev libopencv-dev libyaml-cpp-dev libtomlplusplus-dev nlohmann-json3-dev
   libfmt-dev libspdlog-dev libcli11-dev libssl-dev zlib1g-dev libapriltag-dev libceres-dev
+  pkg-config libaravis-dev libusb-1.0-0-dev libhdf5-dev libzmq3-dev # aravis-0.8.pc asks for libusb
   libgtest-dev libbenchmark-dev
 )
 for argument in "$@"; do
   case $argument in
     --lint) packages+=(clang-tidy clang-format) ;;
+    # Tests of live cameras: a network and a kernel of their own; other readers of our files.
+    --tests) packages+=(iproute2 util-linux qemu-system-x86 busybox-static cpio binutils
+      v4l-utils python3-h5py python3-zmq) ;;
     --plots) packages+=(python3-matplotlib) ;;
     --fuzz) packages+=(clang libclang-rt-dev) ;;
     *)
-      echo "install_deps.sh: unknown argument '$argument'; expected --lint, --plots or --fuzz" >&2
+      echo "install_deps.sh: unknown argument '$argument'; expected --tests, --lint, --plots or --fuzz" >&2
       exit 2
       ;;
   esac

@@ -39,7 +39,7 @@ build_preset() {
   stage "build $1" cmake --build --preset "$1"
 }
 
-if $all; then scripts/install_deps.sh --lint; else scripts/install_deps.sh; fi
+if $all; then scripts/install_deps.sh --tests --lint; else scripts/install_deps.sh --tests; fi
 
 shared_data=${STEREOMOTION_SHARED_DATA:-$root/../shared/data}
 if [[ ! -d $shared_data ]]; then

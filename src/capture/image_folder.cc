@@ -29,6 +29,11 @@ class ImageFolder : public FrameStream {
   bool has_timestamps() const override { return has_timestamps_; }
   bool is_numbered() const override { return numbered_; }
   const std::vector<std::string>& warnings() const override { return listing_.warnings; }
+  fs::path pairs_of() const override {
+    if (listing_.frames.front().pair == kPairNotTold) return {};
+    std::error_code none;
+    return fs::canonical(folder_, none).parent_path();
+  }
 
   void ReadImage(std::int64_t position, Frame& frame) const override {
     // One buffer a decoding thread, so that nothing is allocated once it has grown.

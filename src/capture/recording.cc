@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <locale>
-#include <map>
 #include <sstream>
 #include <stdexcept>
 
 #include "frame_stream.h"
-#include "stereomotion/capture/pair_frames.h"
+#include "hdf5/h5_stream.h"
+#include "pair_streams.h"
 #include "stereomotion/capture/read_image.h"
+#include "stereomotion/capture/recorder.h"
 #include "stereomotion/core/user_error.h"
 
 namespace stereomotion {
@@ -16,11 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Only for two single images, which show no period of their own.
-constexpr std::int64_t kPeriodOfSingleFramesNs = 20'000'000;
-
 std::unique_ptr<FrameStream> OpenStream(const fs::path& path, const StreamOptions& options) {
   if (path.empty()) throw UserError("an empty name, expected a folder of images or a video file");
+  fs::path file;
+  std::string camera;
+  if (SplitRecordingArgument(path.string(), file, camera)) {
+    return OpenH5Stream(file, camera, options);
+  }
   std::error_code ignored;
   if (!fs::is_regular_file(path, ignored)) return OpenImageFolder(path, options);
   if (!IsImageFile(path)) return OpenVideo(path, options);
@@ -37,53 +40,14 @@ void RequireRate(double fps) {
   throw UserError(text.str());
 }
 
-std::vector<std::int64_t> Times(const FrameStream& stream) {
-  std::vector<std::int64_t> times_ns;
-  for (const FrameInfo& frame : stream.frames()) times_ns.push_back(frame.timestamp_ns);
-  return times_ns;
-}
-
 std::int64_t CountExposures(const FrameStream& stream) {
   const auto& frames = stream.frames();
   return std::count_if(frames.begin(), frames.end(),
                        [](const FrameInfo& frame) { return frame.exposure_us > 0; });
 }
 
-std::vector<std::int64_t> ByPosition(std::size_t left_size, std::size_t right_size) {
-  std::vector<std::int64_t> partner(left_size, -1);
-  for (std::size_t i = 0; i < std::min(left_size, right_size); ++i) {
-    partner[i] = static_cast<std::int64_t>(i);
-  }
-  return partner;
-}
-
-// Frame numbers tell which frames one camera lost; a shift alike for all tells nothing.
-bool NumbersTell(const FrameStream& left, const FrameStream& right) {
-  if (!left.is_numbered() || !right.is_numbered()) return false;
-  const auto &a = left.frames(), &b = right.frames();
-  if (a.back().index < b.front().index || b.back().index < a.front().index) return false;
-  if (a.size() != b.size()) return true;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if (a[i].index - b[i].index != a[0].index - b[0].index) return true;
-  }
-  return false;
-}
-
 std::string NumberRange(const std::vector<FrameInfo>& frames) {
   return std::to_string(frames.front().index) + " to " + std::to_string(frames.back().index);
-}
-
-std::vector<std::int64_t> ByNumber(const FrameStream& left, const FrameStream& right) {
-  std::map<std::int64_t, std::int64_t> place;
-  for (const FrameInfo& frame : right.frames()) {
-    place.emplace(frame.index, static_cast<std::int64_t>(place.size()));
-  }
-  std::vector<std::int64_t> partner;
-  for (const FrameInfo& frame : left.frames()) {
-    const auto found = place.find(frame.index);
-    partner.push_back(found == place.end() ? -1 : found->second);
-  }
-  return partner;
 }
 
 class StreamPair : public Recording {
@@ -100,7 +64,7 @@ class StreamPair : public Recording {
   std::int64_t size() const override { return static_cast<std::int64_t>(partner_.size()); }
   const RecordingReport& report() const override { return report_; }
 
-  void Read(std::int64_t position, FramePair& pair) const override {
+  bool Read(std::int64_t position, FramePair& pair) const override {
     if (position < 0 || position >= size())
       throw std::out_of_range("Recording::Read: no such pair");
     ReadFrame(*left_, position, pair.left);
@@ -114,6 +78,7 @@ class StreamPair : public Recording {
       pair.right.image.Resize(0, 0, PixelType::kGray8);
       pair.right.problem = "the left frame has no partner";
     }
+    return true;
   }
 
   std::string InputDigest(Side side) const override { return Stream(side).InputDigest(); }
@@ -133,28 +98,17 @@ class StreamPair : public Recording {
   void RequireSameClocks(const fs::path& left, const fs::path& right) const {
     if (left_->has_timestamps() == right_->has_timestamps()) return;
     const bool left_has = left_->has_timestamps();
-    throw UserError((left_has ? left : right).string() + ": has timestamps.csv, but " +
+    throw UserError((left_has ? left : right).string() + ": has " +
+                    (left_has ? left_ : right_)->times_name() + ", but " +
                     (left_has ? right : left).string() +
                     " has none; expected both (pairs are found by time), or neither and --fps");
   }
   void Pair() {
-    const std::vector<std::int64_t> left_ns = Times(*left_), right_ns = Times(*right_);
-    const std::int64_t left_period = MedianPeriodNs(left_ns);
-    report_.period_s = static_cast<double>(left_period) * 1e-9;
-    report_.paired_by_time = left_->has_timestamps();
-    if (report_.paired_by_time) {
-      std::int64_t period_ns = std::max(left_period, MedianPeriodNs(right_ns));
-      if (left_period > 0 && right_ns.size() > 1) {
-        period_ns = std::min(left_period, MedianPeriodNs(right_ns));
-      }
-      if (period_ns <= 0) period_ns = kPeriodOfSingleFramesNs;
-      partner_ = PairByTime(left_ns, right_ns, (period_ns + 1) / 2);
-    } else if (NumbersTell(*left_, *right_)) {
-      partner_ = ByNumber(*left_, *right_);
-      paired_by_number_ = true;
-    } else {
-      partner_ = ByPosition(left_ns.size(), right_ns.size());
-    }
+    StreamPairing pairing = PairStreams(*left_, *right_);
+    report_.period_s = pairing.period_s;
+    report_.paired_by_time = pairing.by_time;
+    paired_by_number_ = pairing.by_number;
+    partner_ = std::move(pairing.partner);
   }
   void Report(const fs::path& left, const fs::path& right) {
     report_.left_frames = size();
@@ -187,7 +141,7 @@ class StreamPair : public Recording {
   void WarnOfAssumptions(const fs::path& left, const fs::path& right,
                          const RecordingOptions& options) {
     if (report_.paired_by_time && options.fps > 0) {
-      report_.warnings.push_back("--fps is not used: " + (left / "timestamps.csv").string() +
+      report_.warnings.push_back("--fps is not used: " + (left / left_->times_name()).string() +
                                  " and the right camera's give the times");
     }
     const bool by_position = !report_.paired_by_time && !paired_by_number_;
@@ -214,7 +168,7 @@ std::unique_ptr<Recording> OpenRecording(const fs::path& left, const fs::path& r
                                          const RecordingOptions& options) {
   RequireRate(options.fps);
   std::error_code ignored;
-  if (fs::equivalent(left, right, ignored)) {
+  if (left == right || fs::equivalent(left, right, ignored)) {
     throw UserError(left.string() + ": left and right are the same, expected two cameras");
   }
   return std::make_unique<StreamPair>(left, right, options);

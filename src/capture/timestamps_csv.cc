@@ -1,6 +1,7 @@
 #include "timestamps_csv.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <fstream>
 #include <locale>
@@ -92,19 +93,42 @@ double ReadExposure(const Table& table, int column) {
   table.Fail(found.str(), "0 to 10000000 microseconds (0 or no cell: not known)");
 }
 
+std::int64_t ReadPair(const Table& table, int column, std::int64_t& last) {
+  const auto pair = table.Number<std::int64_t>(column);
+  if (pair != -1 && pair <= last) {
+    table.Fail("pair " + std::to_string(pair),
+               "-1 (no partner), or more than the pair before (" + std::to_string(last) + ")");
+  }
+  last = std::max(last, pair);
+  return pair;
+}
+
 }  // namespace
+
+std::string TimestampsRow(const FrameInfo& frame) {
+  std::array<char, 32> exposure{};
+  char* end = exposure.data();
+  if (frame.exposure_us > 0) {
+    end = std::to_chars(end, end + exposure.size(), frame.exposure_us).ptr;
+  }
+  return std::to_string(frame.index) + "," + std::to_string(frame.timestamp_ns) + "," +
+         std::string(exposure.data(), end) + "," + std::to_string(frame.pair) + "\n";
+}
 
 std::vector<FrameInfo> ReadTimestamps(const std::filesystem::path& file) {
   Table table(file);
   const int frame = table.Column("frame");
   const int time = table.Column("timestamp_ns");
   const int exposure = table.Column("exposure_us");
+  const int pair = table.Column("pair");
+  std::int64_t last_pair = -1;
   if (frame < 0) table.Fail("no column 'frame'", "frame,timestamp_ns[,exposure_us]");
   if (time < 0) table.Fail("no column 'timestamp_ns'", "frame,timestamp_ns[,exposure_us]");
   std::vector<FrameInfo> rows;
   while (table.NextLine()) {
     FrameInfo row{table.Number<std::int64_t>(frame), table.Number<std::int64_t>(time), 0};
     if (exposure >= 0 && !table.IsBlank(exposure)) row.exposure_us = ReadExposure(table, exposure);
+    if (pair >= 0) row.pair = ReadPair(table, pair, last_pair);
     if (row.index < 0) table.Fail("frame " + std::to_string(row.index), "0 or more");
     if (!rows.empty() && row.timestamp_ns <= rows.back().timestamp_ns) {
       table.Fail("timestamp_ns " + std::to_string(row.timestamp_ns),

@@ -9,11 +9,11 @@
 #include "local_motion.h"
 #include "pose/body_geometry.h"
 #include "stereomotion/camera/sphere_projection.h"
+#include "stereomotion/core/units.h"
 
 namespace stereomotion {
 namespace {
 
-constexpr double kSecondsPerNs = 1e-9;
 /// A shift below this share of a centre's σ changes the pose by less than anyone can tell.
 constexpr double kNegligibleSigmas = 0.1;
 /// A smear of over a pixel can hide an acceleration that matters.
@@ -32,13 +32,6 @@ const BallObservation& Used(const TrackedPair& pair, const BallAssignment& used)
       .balls[static_cast<std::size_t>(used.camera)][static_cast<std::size_t>(used.detection)];
 }
 
-Eigen::Vector3d Centroid(const Body& body) {
-  const std::vector<BallId> ids = AllBalls(body);
-  Eigen::Vector3d sum_mm = Eigen::Vector3d::Zero();
-  for (const BallId& id : ids) sum_mm += BallInBody(body, id);
-  return sum_mm / static_cast<double>(ids.size());
-}
-
 bool IsSmeared(const TrackedPair& pair) {
   return std::any_of(pair.fix->used.begin(), pair.fix->used.end(), [&](const auto& used) {
     return Used(pair, used).smear_px.norm() > kEvidentSmear_px;
@@ -52,8 +45,7 @@ std::vector<TimedPlacement> NearestPlacements(const PairNeighbours& neighbours,
   std::vector<TimedPlacement> placements;
   for (const TrackedPair* one : neighbours) {
     if (one == nullptr || !one->mean_world_from_body) continue;
-    const double time_s =
-        static_cast<double>(one->timestamp_ns - pair.timestamp_ns) * kSecondsPerNs;
+    const double time_s = SecondsBetween(pair.timestamp_ns, one->timestamp_ns);
     placements.push_back({time_s, *one->mean_world_from_body});
   }
   std::sort(placements.begin(), placements.end(), [](const auto& a, const auto& b) {
@@ -113,8 +105,7 @@ bool IsImpossible(const PairNeighbours& neighbours, const TrackedPair& pair) {
   const double exposure_s = std::max(pair.exposure_s[0], pair.exposure_s[1]);
   return std::any_of(neighbours.begin(), neighbours.end(), [&](const TrackedPair* one) {
     if (one == nullptr || one == &pair) return false;
-    const double gap_s =
-        static_cast<double>(std::abs(one->timestamp_ns - pair.timestamp_ns)) * kSecondsPerNs;
+    const double gap_s = std::abs(SecondsBetween(pair.timestamp_ns, one->timestamp_ns));
     return gap_s < kShortest * exposure_s;
   });
 }

@@ -4,10 +4,11 @@
 #include <cmath>
 #include <tuple>
 
+#include "stereomotion/core/units.h"
+
 namespace stereomotion {
 namespace {
 
-constexpr double kSecondsPerNs = 1e-9;
 /// Beside the outline: the blur's skirt, and what a ball at rest may start with.
 constexpr double kRestMargin_px = 4;
 /// The step from image to image may change by this share of itself. A ball that turns more sharply
@@ -18,10 +19,6 @@ constexpr double kStepChange = 0.5;
 constexpr double kFirstStep_px = 100;
 /// After a longer gap than so many intervals, two lost images, nothing is predicted.
 constexpr double kMostIntervals = 3.5;
-
-double GapSeconds(std::int64_t from_ns, std::int64_t to_ns) {
-  return static_cast<double>(to_ns - from_ns) * kSecondsPerNs;
-}
 
 SearchWindow WindowAround(const BallObservation& ball, double margin_px) {
   const double half_px = std::max(ball.semi_major_px, 0.0) + 0.5 * ball.smear_px.norm() + margin_px;
@@ -59,7 +56,7 @@ double BallFollower::LargestStepPx(double gap_s) const {
 bool BallFollower::Predict(std::int64_t timestamp_ns, int width_px, int height_px) {
   windows_.clear();
   track_of_window_.clear();
-  predicted_gap_s_ = GapSeconds(last_ns_, timestamp_ns);
+  predicted_gap_s_ = SecondsBetween(last_ns_, timestamp_ns);
   const bool known = std::any_of(tracks_.begin(), tracks_.end(),
                                  [](const Track& track) { return track.has_velocity; });
   if (!known || !(predicted_gap_s_ > 0) || predicted_gap_s_ > kMostIntervals * interval_s_) {
@@ -123,7 +120,7 @@ bool BallFollower::FindsAll(const std::vector<BallObservation>& balls) {
 }
 
 void BallFollower::Update(std::int64_t timestamp_ns, const std::vector<BallObservation>& balls) {
-  const double gap_s = GapSeconds(last_ns_, timestamp_ns);
+  const double gap_s = SecondsBetween(last_ns_, timestamp_ns);
   const bool follows = !tracks_.empty() && gap_s > 0;
   track_of_window_.clear();
   if (follows) Match(gap_s, balls);

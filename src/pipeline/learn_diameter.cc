@@ -3,6 +3,7 @@
 
 #include "seen_balls.h"
 #include "stereomotion/camera/sphere_projection.h"
+#include "stereomotion/core/median.h"
 
 namespace stereomotion {
 namespace {
@@ -16,12 +17,6 @@ double DiameterMm(const RigCamera& camera, const BallObservation& ball,
   constexpr double kTrial_mm = 5;  // the outline grows with the radius to first order
   const auto sphere = ProjectSphere(camera.model, camera.cam_from_world * p_in_world_mm, kTrial_mm);
   return sphere ? 2 * kTrial_mm * ball.semi_minor_px / sphere->outline.semi_minor_px : 0;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace

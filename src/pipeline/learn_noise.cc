@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <future>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -21,22 +22,24 @@ std::vector<FramePair> ReadFirstPairs(const PairSource& source, const RigCamera&
                                       const RigCamera& right, std::int64_t first, std::int64_t end,
                                       int wanted) {
   std::vector<FramePair> pairs;
-  const std::int64_t last = std::min(end, first + std::int64_t{kSearchFactor} * wanted);
+  const std::int64_t last =
+      std::min(end, first + std::min(std::int64_t{kSearchFactor} * wanted, kPairsKept));
   for (std::int64_t position = first; position < last && static_cast<int>(pairs.size()) < wanted;) {
     const std::int64_t batch =
         std::min(last - position, std::int64_t{wanted} - static_cast<int>(pairs.size()));
-    std::vector<std::future<FramePair>> reading;
+    std::vector<std::future<std::optional<FramePair>>> reading;
     for (std::int64_t i = 0; i < batch; ++i) {
       reading.push_back(std::async(std::launch::async, [&source, at = position + i] {
-        FramePair pair;
-        source.Read(at, pair);
+        std::optional<FramePair> pair(std::in_place);
+        if (!source.Read(at, *pair)) pair.reset();
         return pair;
       }));
     }
     for (auto& read : reading) {
-      FramePair pair = read.get();
-      if (HasSizeOf(left, pair.left) || HasSizeOf(right, pair.right))
-        pairs.push_back(std::move(pair));
+      std::optional<FramePair> pair = read.get();
+      if (!pair) continue;  // an endless source has ended; what follows comes to nothing at once
+      if (HasSizeOf(left, pair->left) || HasSizeOf(right, pair->right))
+        pairs.push_back(std::move(*pair));
     }
     position += batch;
   }

@@ -12,11 +12,11 @@ void LevelHistogram::Add(double level) {
   ++count_;
 }
 
-std::optional<double> LevelHistogram::Median() const {
+std::optional<double> LevelHistogram::Quantile(double share) const {
   std::int64_t below = 0;
   for (std::size_t i = 0; i < steps_.size() && count_ > 0; ++i) {
     below += steps_[i];
-    if (2 * below >= count_) {
+    if (static_cast<double>(below) >= share * static_cast<double>(count_)) {
       return std::exp2((static_cast<double>(i) + 0.5) / kStepsPerOctave + kLowestOctave);
     }
   }

@@ -58,7 +58,7 @@ OrderedPairs::Settings MakeSettings(const MeasureSetup& setup, const MeasureOpti
 
 RunSummary MeasureRecording(const PairSource& source, const MeasureSetup& setup,
                             const MeasureOptions& options, const MeasurementSink& sink,
-                            const std::atomic<bool>* stop) {
+                            const std::atomic<bool>* stop, const PromptSink& prompt) {
   CheckSetup(source, setup, options);
   Stopwatch total;
   Stopwatch stage;
@@ -70,7 +70,7 @@ RunSummary MeasureRecording(const PairSource& source, const MeasureSetup& setup,
   summary.stage_ms["learn_noise"] = stage.LapMs();
 
   OrderedPairs pairs(source, MakeSettings(setup, options, summary, end));
-  PairMeasurer measurer(setup, options, sink, summary);
+  PairMeasurer measurer(setup, options, {sink, prompt}, summary);
   bool accepts = true;
   while (DetectedPair* pair = accepts && !summary.interrupted ? pairs.Next() : nullptr) {
     accepts = measurer.Take(*pair);

@@ -61,19 +61,24 @@ std::optional<OrderedPairs::Task> OrderedPairs::NextTask() {
   return Task{next_to_start_++, -1};
 }
 
-void OrderedPairs::Perform(const Task& task, std::vector<CameraSearch>& own) {
+bool OrderedPairs::Perform(const Task& task, std::vector<CameraSearch>& own) {
   DetectedPair& pair = SlotOf(task.position).pair;
   if (task.camera >= 0) {
     Search(chains_[static_cast<std::size_t>(task.camera)].search, task.camera, pair);
-    return;
+    return true;
   }
   Stopwatch watch;
-  source_.Read(task.position, pair.frames);
+  if (!source_.Read(task.position, pair.frames)) return false;
   pair.read_ms = watch.LapMs();
   for (std::size_t i = 0; i < own.size(); ++i) Search(own[i], static_cast<int>(i), pair);
+  return true;
 }
 
-void OrderedPairs::Finish(const Task& task) {
+void OrderedPairs::Finish(const Task& task, bool is_there) {
+  if (!is_there) {
+    settings_.end = std::min(settings_.end, task.position);
+    return;
+  }
   Slot& slot = SlotOf(task.position);
   if (task.camera >= 0) {
     slot.searched[static_cast<std::size_t>(task.camera)] = true;
@@ -101,14 +106,15 @@ void OrderedPairs::Work() {
     if (!task) return;
     lock.unlock();
     std::exception_ptr error;
+    bool is_there = true;
     try {
-      Perform(*task, own);
+      is_there = Perform(*task, own);
     } catch (...) {
       error = std::current_exception();
     }
     lock.lock();
     if (error && !error_) error_ = error;
-    Finish(*task);
+    Finish(*task, is_there);
     changed_.notify_all();
   }
 }
@@ -123,10 +129,11 @@ DetectedPair* OrderedPairs::Next() {
     handed_out_ = false;
     changed_.notify_all();
   }
-  if (next_to_hand_out_ >= settings_.end) return nullptr;
   Slot& slot = SlotOf(next_to_hand_out_);
-  changed_.wait(lock, [&] { return slot.ready() || error_; });
+  const auto is_over = [&] { return next_to_hand_out_ >= settings_.end; };
+  changed_.wait(lock, [&] { return is_over() || slot.ready() || error_; });
   if (error_) std::rethrow_exception(error_);
+  if (is_over()) return nullptr;
   handed_out_ = true;
   return &slot.pair;
 }

@@ -35,7 +35,7 @@ class OrderedPairs {
  public:
   struct Settings {
     std::int64_t first = 0;
-    std::int64_t end = 0;  ///< one past the last position
+    std::int64_t end = 0;  ///< one past the last position; an endless source may end before it
     int threads = 1;
     SearchSettings left, right;  ///< equal `search_every`
   };
@@ -70,8 +70,9 @@ class OrderedPairs {
   void Stop();
   [[nodiscard]] bool IsAllStarted() const;
   std::optional<Task> NextTask();
-  void Perform(const Task& task, std::vector<CameraSearch>& own);
-  void Finish(const Task& task);
+  /// False: the source ended before this pair.
+  bool Perform(const Task& task, std::vector<CameraSearch>& own);
+  void Finish(const Task& task, bool is_there);
   Slot& SlotOf(std::int64_t position) {
     return slots_[static_cast<std::size_t>(position) % slots_.size()];
   }

@@ -19,6 +19,7 @@ std::string SizeProblem(const RigCamera& camera, const Frame& frame) {
 
 /// Says why a pair cannot be measured, `detail` in words; kOk where it can.
 PoseStatus FindFault(const MeasureSetup& setup, const FramePair& frames, std::string& detail) {
+  if (frames.left.dropped || frames.right.dropped) return PoseStatus::kDropped;
   const auto& cameras = setup.rig.cameras;
   detail = SizeProblem(cameras[static_cast<std::size_t>(setup.left_camera)], frames.left);
   if (detail.empty()) {
@@ -31,10 +32,10 @@ PoseStatus FindFault(const MeasureSetup& setup, const FramePair& frames, std::st
 }  // namespace
 
 PairMeasurer::PairMeasurer(const MeasureSetup& setup, const MeasureOptions& options,
-                           const MeasurementSink& sink, RunSummary& summary)
+                           const Sinks& sinks, RunSummary& summary)
     : setup_(setup),
       options_(options),
-      sink_(sink),
+      sinks_(sinks),
       summary_(summary),
       totals_(setup, summary),
       trackers_(setup, options.tracker),
@@ -56,8 +57,25 @@ bool PairMeasurer::Take(const DetectedPair& detected) {
     if (pair.fix) pair.mean_world_from_body = BodyPlacement(BodyOf(setup_, pair), pair.fix->pose);
   }
   ++taken_;
+  if (sinks_.prompt) TellPrompt(detected);
   summary_.stage_ms["pose"] += stage_.LapMs();
   return taken_ <= kMotionReach || HandOut();
+}
+
+void PairMeasurer::TellPrompt(const DetectedPair& detected) const {
+  PromptPose prompt;
+  prompt.exposure_us = detected.frames.left.exposure_us;
+  prompt.detections_left = static_cast<int>(detected.left.size());
+  prompt.detections_right = static_cast<int>(detected.right.size());
+  for (const Ring& ring : rings_) {
+    const TrackedPair& pair = ring[static_cast<std::size_t>(taken_ - 1) % ring.size()];
+    prompt.body = pair.body;
+    prompt.frame = pair.frame;
+    prompt.timestamp_ns = pair.timestamp_ns;
+    prompt.status = pair.fix ? PoseStatus::kOk : pair.fix.error();
+    prompt.pose = pair.fix ? &pair.fix->pose : nullptr;
+    sinks_.prompt(prompt);
+  }
 }
 
 void PairMeasurer::TakeEnd() {
@@ -106,7 +124,7 @@ bool PairMeasurer::HandOut(std::size_t body) {
   summary_.stage_ms["pose"] += stage_.LapMs();
   totals_.Count(pair, exposure, measurement_);
   stage_.LapMs();
-  const bool go_on = sink_(measurement_);
+  const bool go_on = sinks_.each(measurement_);
   summary_.stage_ms["write"] += stage_.LapMs();
   return go_on;
 }

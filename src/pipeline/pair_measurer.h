@@ -18,8 +18,12 @@ namespace stereomotion {
 /// Tracks pair after pair and keeps those that tell a pose's motion: two before it, two after it.
 class PairMeasurer {
  public:
-  PairMeasurer(const MeasureSetup& setup, const MeasureOptions& options,
-               const MeasurementSink& sink, RunSummary& summary);
+  struct Sinks {
+    const MeasurementSink& each;
+    const PromptSink& prompt;
+  };
+  PairMeasurer(const MeasureSetup& setup, const MeasureOptions& options, const Sinks& sinks,
+               RunSummary& summary);
 
   /// Tracks the next pair; hands out the one that now has all its neighbours. False ends the run.
   bool Take(const DetectedPair& detected);
@@ -36,13 +40,15 @@ class PairMeasurer {
   [[nodiscard]] double ExposureSeconds(const Frame& frame) const;
   /// Copies what was detected; into a pair that was used before, without new memory.
   void Fill(const DetectedPair& detected, int body, TrackedPair& pair) const;
+  /// Tells of the pair that was tracked last.
+  void TellPrompt(const DetectedPair& detected) const;
   /// Hands out one pair, body by body.
   bool HandOut();
   bool HandOut(std::size_t body);
 
   const MeasureSetup& setup_;
   const MeasureOptions& options_;
-  const MeasurementSink& sink_;
+  Sinks sinks_;
   RunSummary& summary_;
   RunTotals totals_;
   BodyTrackers trackers_;

@@ -9,19 +9,11 @@
 #include "pose/body_geometry.h"
 #include "pose/verify_pose.h"
 #include "stereomotion/camera/sphere_projection.h"
+#include "stereomotion/core/units.h"
 #include "stereomotion/geometry/so3.h"
 
 namespace stereomotion {
 namespace {
-
-constexpr double kSecondsPerNs = 1e-9;
-
-Eigen::Vector3d Centroid(const Body& body) {
-  Eigen::Vector3d sum_mm = Eigen::Vector3d::Zero();
-  const std::vector<BallId> ids = AllBalls(body);
-  for (const BallId& id : ids) sum_mm += BallInBody(body, id);
-  return sum_mm / static_cast<double>(ids.size());
-}
 
 /// Half the smallest distance between two outlines of neighbours on a rod: beyond it, a ball could
 /// be taken for the next one.
@@ -77,13 +69,12 @@ PoseTracker::PoseTracker(RigCamera left, RigCamera right, Body body, TrackerOpti
 
 std::optional<PoseTracker::Prediction> PoseTracker::Predict(std::int64_t timestamp_ns) const {
   if (!last_) return std::nullopt;
-  const double gap_s = static_cast<double>(timestamp_ns - last_->timestamp_ns) * kSecondsPerNs;
+  const double gap_s = SecondsBetween(last_->timestamp_ns, timestamp_ns);
   if (gap_s > options_.max_gap_s) return std::nullopt;
   // At rest so far as is known; how wrong that is, nothing tells.
   Prediction prediction{last_->world_from_body, std::numeric_limits<double>::infinity()};
   if (!before_last_) return prediction;
-  const double past_s =
-      static_cast<double>(last_->timestamp_ns - before_last_->timestamp_ns) * kSecondsPerNs;
+  const double past_s = SecondsBetween(before_last_->timestamp_ns, last_->timestamp_ns);
   if (past_s <= 0 || past_s > options_.max_gap_s) return prediction;
 
   const double ratio = gap_s / past_s;

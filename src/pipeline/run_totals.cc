@@ -79,7 +79,8 @@ void RunTotals::CountLoss(const TrackedPair& pair, const PairMeasurement& measur
   if (status == PoseStatus::kInconsistent && own.inconsistent++ == 0) {
     own.first_inconsistent_frame = measurement.frame;
   }
-  const bool complete = status != PoseStatus::kUnreadable && status != PoseStatus::kNoPair;
+  const bool complete = status != PoseStatus::kUnreadable && status != PoseStatus::kNoPair &&
+                        status != PoseStatus::kDropped;
   if (complete && total.poses == 0 && own.failed.size() < kPairsToDiagnose) {
     own.failed.push_back({pair.balls[0], pair.balls[1]});
   }

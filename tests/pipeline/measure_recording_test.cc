@@ -37,10 +37,11 @@ class WatchedSource : public PairSource {
   using OnRead = std::function<void(std::int64_t position, const FramePair& pair)>;
   WatchedSource(std::int64_t size, OnRead on_read) : size_(size), on_read_(std::move(on_read)) {}
   [[nodiscard]] std::int64_t size() const override { return size_; }
-  void Read(std::int64_t position, FramePair& pair) const override {
+  bool Read(std::int64_t position, FramePair& pair) const override {
     pair.left.index = pair.right.index = position;
     pair.left.problem = pair.right.problem = "left out";
     on_read_(position, pair);
+    return true;
   }
 
  private:

@@ -28,8 +28,9 @@ struct MeasureSetup {
 struct MeasureOptions {
   DetectionOptions detection;
   TrackerOptions tracker;
-  int threads = 0;      ///< 0: as many as the machine has cores
-  int noise_pairs = 8;  ///< pairs from which the noise is learned before the run
+  int threads = 0;  ///< 0: as many as the machine has cores
+  /// Pairs from which the noise is learned before the run; sought among the first `kPairsKept`.
+  int noise_pairs = 8;
   /// Every how manyth image of a camera is searched whole; the others only where the balls seen
   /// before should be. A ball that comes into sight is then found up to `search_every` − 1 images
   /// late.
@@ -43,6 +44,23 @@ struct MeasureOptions {
 /// `MeasureSetup::bodies`; returns false to end the run (disk full).
 using MeasurementSink = std::function<bool(const PairMeasurement&)>;
 
+/// Holds what is known of one body's pose as soon as it was tracked: before its neighbours in time
+/// moved it to mid-exposure and the rig's covariance was propagated. Both change it by no more than
+/// poses of strongly smeared balls show.
+struct PromptPose {
+  int body = 0;  ///< index into `MeasureSetup::bodies`
+  std::int64_t frame = -1;
+  std::int64_t timestamp_ns = 0;
+  double exposure_us = 0;  ///< of the left image; 0: unknown
+  PoseStatus status = PoseStatus::kLost;
+  const PoseEstimate* pose = nullptr;  ///< null without one; valid during the call
+  int detections_left = 0, detections_right = 0;
+};
+
+/// Takes each pose at once, body by body in frame order, two pairs before `MeasurementSink` gets
+/// it; from the same thread. What it does changes no result.
+using PromptSink = std::function<void(const PromptPose&)>;
+
 /// Measures a recording: learn the noise → per pair read, detect (in parallel), track every body's
 /// pose, move it to mid-exposure, give every ball its 3D point, propagate the rig's covariance →
 /// `sink`, in frame order, two pairs behind (a pose's motion is told by those around it).
@@ -50,10 +68,12 @@ using MeasurementSink = std::function<bool(const PairMeasurement&)>;
 /// Balls are detected once; a detection serves one body only (`BodyTrackers` in the sources says
 /// which).
 ///
-/// The measurements do not depend on `threads`. `stop` (may be null) ends the run after the pairs
-/// in hand. Memory does not grow with the recording's length.
+/// The measurements do not depend on `threads`, nor on whether the source is a recording or an
+/// endless source that delivers the same pairs. `stop` (may be null) ends the run after the pairs
+/// in hand; an endless source that is made to end (its `Read` is false) ends it after all pairs
+/// that it still had. Memory does not grow with the number of pairs.
 RunSummary MeasureRecording(const PairSource& source, const MeasureSetup& setup,
                             const MeasureOptions& options, const MeasurementSink& sink,
-                            const std::atomic<bool>* stop = nullptr);
+                            const std::atomic<bool>* stop = nullptr, const PromptSink& prompt = {});
 
 }  // namespace stereomotion

@@ -1,0 +1,68 @@
+#include "live_pair.h"
+
+#include <algorithm>
+
+#include "stereomotion/core/user_error.h"
+
+namespace stereomotion::app {
+namespace {
+
+/// Software triggers a second where nothing says how many: slow enough for any camera.
+constexpr double kUsualTrigger_hz = 20;
+
+// Where this program triggers, it needs the rate.
+double TriggerRateHz(const std::array<CameraSettings, 2>& settings) {
+  double rate_hz = 0;
+  for (const CameraSettings& one : settings) {
+    if (one.trigger != TriggerMode::kSoftware) continue;
+    const double own_hz = one.frame_rate_hz.value_or(kUsualTrigger_hz);
+    rate_hz = rate_hz > 0 ? std::min(rate_hz, own_hz) : own_hz;
+  }
+  return rate_hz;
+}
+
+std::array<CameraSettings, 2> SettingsOf(const ResolvedCameras& cameras,
+                                         const LiveArguments& arguments) {
+  return {SettingsFor(0, cameras.left.settings, arguments),
+          SettingsFor(1, cameras.right.settings, arguments)};
+}
+
+}  // namespace
+
+bool AreLive(const ResolvedCameras& cameras) {
+  const bool left = !cameras.left.live.empty();
+  const bool right = !cameras.right.live.empty();
+  if (left == right) return left;
+  throw UserError("--left " + cameras.left.path.string() + " and --right " +
+                  cameras.right.path.string() + ": one is a live camera, the other is recorded" +
+                  ", expected both live or both recorded");
+}
+
+OpenedCameras OpenCameras(const ResolvedCameras& cameras, const LiveArguments& arguments) {
+  if (cameras.left.live == cameras.right.live) {
+    throw UserError("--left and --right: both are " + cameras.left.live + ", expected two cameras");
+  }
+  const std::array<CameraSettings, 2> settings = SettingsOf(cameras, arguments);
+  OpenedCameras opened;
+  const std::array<const std::string*, 2> uris = {&cameras.left.live, &cameras.right.live};
+  for (std::size_t i = 0; i < uris.size(); ++i) {
+    opened.devices[i] = OpenCamera(*uris[i], settings[i]);
+    opened.info[i] = opened.devices[i]->info();
+  }
+  return opened;
+}
+
+std::unique_ptr<LivePairs> MakeLivePair(OpenedCameras opened, const ResolvedCameras& cameras,
+                                        const LiveArguments& arguments, FrameTap* tap) {
+  LiveOptions live = arguments.live;
+  live.trigger_hz = TriggerRateHz(SettingsOf(cameras, arguments));
+  return std::make_unique<LivePairs>(std::move(opened.devices[0]), std::move(opened.devices[1]),
+                                     live, tap);
+}
+
+std::unique_ptr<LivePairs> OpenLivePair(const ResolvedCameras& cameras,
+                                        const LiveArguments& arguments, FrameTap* tap) {
+  return MakeLivePair(OpenCameras(cameras, arguments), cameras, arguments, tap);
+}
+
+}  // namespace stereomotion::app

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace stereomotion::app {
+
+/// Tells what the disk is like on which `output` comes to lie.
+struct DiskState {
+  double free_bytes = 0;
+  double write_bytes_s = 0;  ///< as measured; 0: not measured
+};
+
+/// Asks for the free room; `measure`: writes a file for a fraction of a second and removes it.
+/// Throws `OutputError` where nothing can be written there.
+DiskState LookAtDisk(const std::filesystem::path& output, bool measure);
+
+/// Says in words for how long the room lasts at a rate.
+std::string RoomInWords(double free_bytes, double bytes_s);
+
+}  // namespace stereomotion::app

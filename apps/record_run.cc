@@ -1,0 +1,157 @@
+#include "record_run.h"
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "camera_argument.h"
+#include "live_json.h"
+#include "live_pair.h"
+#include "record_progress.h"
+#include "stereomotion/capture/recorder.h"
+#include "stereomotion/core/device_error.h"
+#include "stereomotion/core/output_error.h"
+#include "stereomotion/core/user_error.h"
+#include "stereomotion/io/rig_file.h"
+#include "stereomotion/io/write_file.h"
+#include "stop_signal.h"
+#include "version.h"
+
+namespace stereomotion::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The rig gives names, sources and settings; none is needed.
+Rig LoadRig(const std::string& given, fs::path& file) {
+  std::error_code ignored;
+  file = given.empty() && fs::exists("rig.yaml", ignored) ? fs::path("rig.yaml") : fs::path(given);
+  return file.empty() ? Rig{} : ReadRig(file);
+}
+
+std::string NameOf(const ResolvedCamera& camera, const Rig& rig, const char* otherwise) {
+  const bool in_rig = camera.rig_camera >= 0 && !rig.cameras.empty();
+  return in_rig ? rig.cameras[static_cast<std::size_t>(camera.rig_camera)].name : otherwise;
+}
+
+fs::path JsonBeside(const fs::path& output) {
+  std::error_code ignored;
+  if (fs::is_directory(output, ignored)) return output / "record.json";
+  return output.string() + ".json";
+}
+
+void WriteJson(const RecordOptions& options, const CommonOptions& common, const LiveReport& report,
+               const RecorderCounts& counts) {
+  LiveExtras extras;
+  extras.recorded = counts;
+  extras.recording = options.output;
+  const nlohmann::ordered_json json = {
+      {"format", "stereomotion-record/1"},
+      {"version", kVersion},
+      {"command", common.command_line},
+      {"live", nlohmann::ordered_json::parse(LiveJson(report, extras))}};
+  constexpr int kIndent = 2;
+  WriteFileAtomically(JsonBeside(options.output), json.dump(kIndent) + "\n");
+}
+
+// Pairs are taken from the stream by nobody else: they only have to go.
+void Drain(const LivePairs& pairs) {
+  FramePair pair;
+  for (std::int64_t i = 0; pairs.Read(i, pair); ++i) {
+  }
+}
+
+void Watch(LivePairs& pairs, const Recorder& recorder, const std::atomic<bool>& ended,
+           RecordProgress& progress) {
+  constexpr std::chrono::milliseconds kLook{50};
+  const std::atomic<bool>& stop = CatchStopSignals();
+  while (!ended) {
+    std::this_thread::sleep_for(kLook);
+    if (stop) pairs.Stop("interrupted");
+    const RecorderCounts counts = recorder.counts();
+    if (!counts.problem.empty()) pairs.Stop("output_failed");
+    progress.Show(pairs.report(), counts);
+  }
+}
+
+LiveReport Take(LivePairs& pairs, const Recorder& recorder, RecordProgress& progress) {
+  CatchStopSignals();
+  pairs.Start();
+  std::atomic<bool> ended{false};
+  std::thread drain([&] {
+    Drain(pairs);
+    ended = true;
+  });
+  Watch(pairs, recorder, ended, progress);
+  drain.join();
+  progress.Show(pairs.report(), recorder.counts());
+  return pairs.report();
+}
+
+void PrintSummary(const LiveReport& report, const RecorderCounts& counts) {
+  constexpr double kBytesPerMb = 1e6;
+  const auto alone = counts.frames[0] + counts.frames[1] - 2 * counts.pairs;
+  fmt::print(
+      "pairs recorded   {}\nimages alone     {}\npairs dropped    {}\nMB               {:.1f}\n",
+      counts.pairs, alone, counts.dropped, static_cast<double>(counts.bytes) / kBytesPerMb);
+  for (const LiveCameraReport& camera : report.cameras) {
+    fmt::print("{}: {} images, {:.2f}/s, {} incomplete, {} lost\n", camera.uri,
+               camera.counts.frames, camera.rate_hz,
+               camera.counts.incomplete + camera.counts.wrong_format,
+               camera.counts.lost + camera.counts.underruns);
+  }
+}
+
+int Conclude(const RecordOptions& options, const CommonOptions& common, const LiveReport& report,
+             const RecorderCounts& counts) {
+  WriteJson(options, common, report, counts);
+  if (!common.quiet) PrintSummary(report, counts);
+  fmt::print("{}\n", options.output);
+  if (!counts.problem.empty()) {
+    throw OutputError(
+        fmt::format("{}: the recording ended early, {} pairs before that are readable",
+                    counts.problem, counts.pairs));
+  }
+  if (!report.problem.empty()) throw DeviceError(report.problem);
+  if (counts.dropped > 0) {
+    spdlog::warn("{} pairs were dropped: the disk is too slow for these cameras", counts.dropped);
+  }
+  return counts.pairs > 0 || report.end == "interrupted" ? kDone : kNoAnswer;
+}
+
+}  // namespace
+
+int RunLiveRecord(const RecordOptions& options, const CommonOptions& common) {
+  fs::path rig_file;
+  const Rig rig = LoadRig(options.rig, rig_file);
+  const ResolvedCameras cameras = ResolveCameras(options.left, options.right, rig, rig_file);
+  for (const auto& note : cameras.notes) spdlog::info(note);
+  if (!AreLive(cameras)) {
+    throw UserError("--left " + options.left + ": is recorded already, expected a live camera " +
+                    "(aravis:… or v4l2:…); --export makes image folders of a recording file");
+  }
+  const DiskState disk = LookAtDisk(options.output, /*measure=*/true);
+  OpenedCameras opened = OpenCameras(cameras, options.live);
+  RecorderOptions recording;
+  recording.output = options.output;
+  recording.names = {NameOf(cameras.left, rig, "cam0"), NameOf(cameras.right, rig, "cam1")};
+  recording.overwrite = options.force;
+  const std::unique_ptr<Recorder> recorder = StartRecorder(recording);
+  LiveArguments arguments = options.live;
+  arguments.live.count = options.count;
+  LiveReport report;
+  RecordProgress progress(options.output, disk, common.quiet);
+  {
+    const auto pairs = MakeLivePair(std::move(opened), cameras, arguments, recorder.get());
+    report = Take(*pairs, *recorder, progress);
+  }
+  recorder->Finish();
+  progress.Clear();
+  return Conclude(options, common, report, recorder->counts());
+}
+
+}  // namespace stereomotion::app

@@ -1,0 +1,53 @@
+#include "h5_handle.h"
+
+namespace stereomotion {
+namespace {
+
+// The library is one for the whole process, so its lock must be, too.
+std::recursive_mutex& LibraryMutex() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
+// Walking upwards the first is the call that failed, the last the one that was asked.
+herr_t KeepFirst(unsigned level, const H5E_error2_t* error, void* text) {
+  if (level == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
+  return 0;
+}
+
+}  // namespace
+
+H5Lock::H5Lock() : lock_(LibraryMutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+H5Handle::~H5Handle() {
+  if (id_ >= 0) H5Idec_ref(id_);
+}
+
+H5Handle& H5Handle::operator=(H5Handle&& other) noexcept {
+  if (this == &other) return *this;
+  if (id_ >= 0) H5Idec_ref(id_);
+  id_ = other.id_;
+  other.id_ = H5I_INVALID_HID;
+  return *this;
+}
+
+std::string H5ErrorText() {
+  std::string text;
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, KeepFirst, &text);
+  H5Eclear2(H5E_DEFAULT);
+  return text.empty() ? "HDF5 does not say why" : text;
+}
+
+H5Handle H5FileAccess() {
+  H5Handle access(H5Pcreate(H5P_FILE_ACCESS));
+  H5Pset_file_locking(access.id(), /*use_file_locking=*/false, /*ignore_when_disabled=*/true);
+  return access;
+}
+
+H5Handle CreateH5File(const std::string& file, const H5Handle& access) {
+  const H5Handle creation(H5Pcreate(H5P_FILE_CREATE));
+  H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  return H5Handle(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()));
+}
+
+}  // namespace stereomotion

@@ -1,0 +1,96 @@
+#include <algorithm>
+
+#include "h5_reader.h"
+#include "join_segments.h"
+#include "recording_lock.h"
+#include "stereomotion/capture/recorder.h"
+#include "stereomotion/core/user_error.h"
+
+namespace stereomotion {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsRecordingFile(const fs::path& file) {
+  std::error_code none;
+  const fs::path extension = file.extension();
+  return (extension == ".h5" || extension == ".hdf5") && !fs::is_directory(file, none);
+}
+
+// A camera may have started later than the other.
+std::vector<std::string> CamerasOfSegments(const fs::path& recording) {
+  std::vector<std::string> most;
+  for (const fs::path& segment : ListSegments(recording)) {
+    try {
+      std::vector<std::string> cameras = H5Reader(segment).Cameras();
+      if (cameras.size() > most.size()) most = std::move(cameras);
+    } catch (const UserError&) {
+      continue;  // the repair tells of it
+    }
+    constexpr std::size_t kBoth = 2;
+    if (most.size() >= kBoth) break;
+  }
+  return most;
+}
+
+}  // namespace
+
+bool SplitRecordingArgument(const std::string& argument, fs::path& file, std::string& camera) {
+  const std::size_t colon = argument.rfind(':');
+  if (IsRecordingFile(argument)) {
+    file = argument;
+    camera.clear();
+    return true;
+  }
+  if (colon == std::string::npos || !IsRecordingFile(argument.substr(0, colon))) return false;
+  file = argument.substr(0, colon);
+  camera = argument.substr(colon + 1);
+  return true;
+}
+
+bool NeedsRepair(const fs::path& recording) { return IsMarkedUnfinished(recording); }
+
+RepairReport RepairRecording(const fs::path& recording) {
+  std::error_code none;
+  if (!fs::is_directory(SegmentFolder(recording), none)) {
+    throw UserError(SegmentFolder(recording).string() + ": no such folder; a recording that was " +
+                    "not finished has its images there");
+  }
+  RepairReport report;
+  if (!IsMarkedUnfinished(recording)) {
+    report.notes.push_back(recording.string() + ": is finished; there is nothing to repair");
+    const H5Lock lock;
+    const H5Reader reader(recording);
+    const auto cameras = reader.Cameras();
+    for (std::size_t i = 0; i < std::min<std::size_t>(2, cameras.size()); ++i) {
+      report.frames[i] = reader.Images("/" + cameras[i] + "/images").frames;
+    }
+    return report;
+  }
+  RecordingLock lock(recording, RecordingLock::Use::kRepair);
+  lock.FreeReserve();
+  const JoinedSegments joined = JoinSegments(recording, !lock.is_from_earlier_boot());
+  lock.Remove();
+  report.notes = joined.notes;
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, joined.frames.size()); ++i) {
+    report.frames[i] = joined.frames[i];
+    report.notes.push_back(recording.string() + ": " + std::to_string(joined.frames[i]) +
+                           " frames of " + joined.names[i] + " are readable");
+  }
+  if (lock.is_from_earlier_boot()) {
+    report.notes.push_back(recording.string() + ": the computer was started anew since it was " +
+                           "recorded: only what had surely reached the disk is kept");
+  }
+  return report;
+}
+
+std::vector<std::string> CamerasOfRecording(const fs::path& recording) {
+  const H5Lock lock;
+  const bool unfinished = NeedsRepair(recording);
+  std::vector<std::string> cameras =
+      unfinished ? CamerasOfSegments(recording) : H5Reader(recording).Cameras();
+  if (!cameras.empty()) return cameras;
+  throw UserError(recording.string() + ": holds no images, expected /cam0/images, /cam1/images");
+}
+
+}  // namespace stereomotion

@@ -1,0 +1,208 @@
+#include "clock_pair.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace stereomotion {
+namespace {
+
+constexpr std::size_t kFramesToLock = 8;
+constexpr std::size_t kFewestFramesToLock = 3;
+/// So many blocks one after the other must show a walk: one may hold a disturbance.
+constexpr int kBlocksToBelieve = 2;
+/// So many images in a row must lie apart: the first arrivals may have been disturbed.
+constexpr int kTriesToBelieve = 16;
+/// A network delays both cameras' images by less than this for good; clocks that differ by more are
+/// not one.
+constexpr double kNoDelayNs = 1e9;
+constexpr double kSteepestDrift = 500e-6;  ///< of two crystals, ns a ns
+constexpr double kDriftKnown = 20e-6;
+
+}  // namespace
+
+void ClockPair::AddFrame(int camera, std::int64_t device_ns, std::int64_t host_ns) {
+  if (locked() && !shared_) {
+    // Delays are never negative: earlier than the clocks allow tells that they were set, or that
+    // all images were late so far. Either way the relation is not what it was taken for.
+    const std::int64_t late_ns = host_ns - device_ns - line(camera).HostMinusDevice(device_ns);
+    if (4 * late_ns < -period_ns()) GiveUp();
+  }
+  fits_[Index(camera)].Add(device_ns, host_ns);
+  last_ns_[Index(camera)] = device_ns;
+}
+
+void ClockPair::AddStep(int camera, std::int64_t step_ns, std::int64_t frames) {
+  steps_[Index(camera)].Add(step_ns, frames);
+}
+
+void ClockPair::ResetClock(int camera) {
+  fits_[Index(camera)].Reset();
+  state_ = LockState::kTooFewFrames;
+}
+
+void ClockPair::GiveUp() {
+  ++given_up_;
+  ResetClock(0);
+  ResetClock(1);
+}
+
+std::int64_t ClockPair::period_ns() const {
+  const std::int64_t left_ns = steps_[0].period_ns(), right_ns = steps_[1].period_ns();
+  return left_ns > 0 && right_ns > 0 ? std::min(left_ns, right_ns) : std::max(left_ns, right_ns);
+}
+
+double ClockPair::uncertainty_ns() const {
+  return fits_[0].uncertainty_ns() + fits_[1].uncertainty_ns();
+}
+
+std::optional<std::int64_t> ClockPair::BestOffsetAt(std::int64_t right_ns) const {
+  if (locked()) return OffsetAt(right_ns);
+  return shared_ ? 0 : OffsetByArrivals();
+}
+
+std::int64_t ClockPair::last_offset_ns() const { return BestOffsetAt(last_ns_[1]).value_or(0); }
+
+std::optional<std::int64_t> ClockPair::OffsetByArrivals() const {
+  if (!fits_[0].has_line() || !fits_[1].has_line()) return std::nullopt;
+  return line(1).HostMinusDevice(last_ns_[1]) - line(0).HostMinusDevice(last_ns_[0]);
+}
+
+std::optional<double> ClockPair::drift_ppm() const {
+  const double known = fits_[0].slope_uncertainty() + fits_[1].slope_uncertainty();
+  if (shared_ || !(known < kDriftKnown)) return std::nullopt;
+  constexpr double kPpm = 1e6;
+  return kPpm * (line(0).slope - line(1).slope);
+}
+
+double ClockPair::UsableSlope() const {
+  const double known = fits_[0].slope_uncertainty() + fits_[1].slope_uncertainty();
+  return known < kDriftKnown ? line(1).slope - line(0).slope : 0;
+}
+
+void ClockPair::TryLock(const std::vector<std::int64_t>& left_ns,
+                        const std::vector<std::int64_t>& right_ns, bool patient) {
+  const auto fitted = static_cast<std::size_t>(std::min(fits_[0].frames(), fits_[1].frames()));
+  const std::size_t frames = std::min({left_ns.size(), right_ns.size(), fitted});
+  state_ = LockState::kTooFewFrames;
+  if (frames < (patient ? kFewestFramesToLock : kFramesToLock) || period_ns() <= 0) return;
+  state_ = Lock(left_ns, right_ns);
+}
+
+void ClockPair::CheckSharedClock() {
+  const double apart_ns = std::abs(static_cast<double>(OffsetByArrivals().value_or(0)));
+  if (!(apart_ns > kNoDelayNs + uncertainty_ns())) return;
+  shared_ = false;
+  distrusts_ = true;
+}
+
+LockState ClockPair::Lock(const std::vector<std::int64_t>& left_ns,
+                          const std::vector<std::int64_t>& right_ns) {
+  if (shared_) CheckSharedClock();
+  if (shared_) {
+    Settle(ClockRelation::kShared, 0, 0);
+    return LockState::kLocked;
+  }
+  const auto period_ns = static_cast<double>(this->period_ns());
+  if (!(uncertainty_ns() <= period_ns / 8)) return LockState::kAmbiguous;
+  const std::int64_t arrivals_ns = *OffsetByArrivals();
+  phase_.Compare(left_ns, right_ns, arrivals_ns, this->period_ns() / 2 + 1);
+  if (phase_.size() < kFewestFramesToLock) return LockState::kTooFewFrames;
+  if (phase_.Slide(2 * kSteepestDrift)) free_running_ = true;
+  const double difference_ns = phase_.MedianNs();
+  phase_ns_ = -difference_ns;
+  if (!(std::abs(difference_ns) < period_ns / 4)) {
+    if (++apart_in_a_row_ >= kTriesToBelieve) free_running_ = true;
+    return LockState::kNotTogether;
+  }
+  apart_in_a_row_ = 0;
+  const auto apart_ns = static_cast<double>(arrivals_ns);
+  const bool agree = std::abs(apart_ns) + uncertainty_ns() < period_ns / 4 &&
+                     std::abs(apart_ns + difference_ns) < period_ns / 4;
+  const double constant_ns = free_running_ ? 0 : difference_ns;
+  if (agree) {
+    Settle(ClockRelation::kAgreeing, 0, constant_ns);
+  } else {
+    Settle(ClockRelation::kEstimated, arrivals_ns + std::llround(constant_ns), constant_ns);
+  }
+  return LockState::kLocked;
+}
+
+void ClockPair::Settle(ClockRelation relation, std::int64_t offset_ns, double constant_ns) {
+  relation_ = relation;
+  base_ns_ = offset_ns;
+  offset_ns_ = 0;
+  offset_at_ns_ = last_ns_[1];
+  constant_ns_ = constant_ns;
+  anchor_ns_ = uncertainty_ns();
+  first_ns_.reset();
+  blocks_.Clear();
+  walks_ = 0;
+}
+
+std::int64_t ClockPair::OffsetAt(std::int64_t right_ns) const {
+  if (relation_ != ClockRelation::kEstimated) return 0;
+  const auto since_ns = static_cast<double>(right_ns - offset_at_ns_);
+  return base_ns_ + std::llround(offset_ns_ + UsableSlope() * since_ns);
+}
+
+void ClockPair::TakePair(std::int64_t left_ns, std::int64_t right_ns) {
+  const auto block = blocks_.Add(static_cast<double>(left_ns - right_ns - base_ns_));
+  if (!block) return;
+  if (!first_ns_) first_ns_ = block->median_ns;
+  if (shared_) {
+    JudgeShared(block->median_ns, block->spread_ns);
+  } else {
+    JudgeByArrivals(block->median_ns, block->spread_ns, right_ns);
+  }
+}
+
+void ClockPair::JudgeShared(double median_ns, double spread_ns) {
+  const double limit_ns = std::max(static_cast<double>(period_ns()) / 16, 3 * spread_ns);
+  JudgeWalk(median_ns - *first_ns_, limit_ns);
+}
+
+void ClockPair::JudgeWalk(double walk_ns, double limit_ns) {
+  walks_ = std::abs(walk_ns) > limit_ns ? walks_ + 1 : 0;
+  if (walks_ >= kBlocksToBelieve) free_running_ = true;
+}
+
+void ClockPair::JudgeByArrivals(double median_ns, double spread_ns, std::int64_t right_ns) {
+  const auto period_ns = static_cast<double>(this->period_ns());
+  const double arrivals_ns = static_cast<double>(*OffsetByArrivals() - base_ns_);
+  const double uncertainty_ns = this->uncertainty_ns();
+  // Arrivals are known better the longer they are watched: the constant is taken anew with them, so
+  // few times that no walk can be followed by it.
+  if (!free_running_ && uncertainty_ns < anchor_ns_ / 2) {
+    constant_ns_ = std::clamp(median_ns - arrivals_ns, -period_ns / 4, period_ns / 4);
+    anchor_ns_ = uncertainty_ns;
+  }
+  const double walk_ns = median_ns - arrivals_ns - constant_ns_;
+  const double limit_ns =
+      std::clamp(3 * (anchor_ns_ + uncertainty_ns), period_ns / 8, period_ns / 4);
+  JudgeWalk(walk_ns, std::max(limit_ns, 3 * spread_ns));
+  if (free_running_) constant_ns_ = 0;
+  const double allowed_ns = free_running_ ? 0 : limit_ns;
+  const double target_ns =
+      arrivals_ns + constant_ns_ + std::clamp(walk_ns, -allowed_ns, allowed_ns);
+  if (relation_ == ClockRelation::kAgreeing) {
+    // Pairs drift apart: the clocks do if arrivals say the same, else the cameras.
+    const double apart_ns = std::abs(median_ns - *first_ns_);
+    if (free_running_ || apart_ns < period_ns / 16 || std::abs(walk_ns) > apart_ns / 2) return;
+    relation_ = ClockRelation::kEstimated;
+    offset_ns_ = target_ns;
+    offset_at_ns_ = right_ns;
+    return;
+  }
+  Follow(target_ns, spread_ns, right_ns);
+}
+
+void ClockPair::Follow(double target_ns, double spread_ns, std::int64_t right_ns) {
+  const double now_ns = static_cast<double>(OffsetAt(right_ns) - base_ns_);
+  const double most_ns = kSteepestDrift * static_cast<double>(right_ns - offset_at_ns_) + spread_ns;
+  offset_ns_ =
+      free_running_ ? target_ns : now_ns + std::clamp(target_ns - now_ns, -most_ns, most_ns);
+  offset_at_ns_ = right_ns;
+}
+
+}  // namespace stereomotion
