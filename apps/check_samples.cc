@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "live_pair.h"
 #include "stereomotion/core/device_error.h"
@@ -65,29 +66,38 @@ double DifferenceMs(const FramePair& pair) {
   return SecondsBetween(pair.left.timestamp_ns, pair.right.timestamp_ns) * kMsPerSecond;
 }
 
-// Cameras that run freely drift against each other: the first and the last third of the pairs then
-// differ by far more than the pairs of a third among themselves.
-bool Drifts(const std::vector<double>& differences_ms, double jitter_ms) {
+double SpreadAbout(double middle, const std::vector<double>& values) {
+  std::vector<double> deviations;
+  for (const double value : values) deviations.push_back(std::abs(value - middle));
+  return kSigmaPerMad * Median(deviations);
+}
+
+// Cameras that run freely drift against each other: between the first and the last third of the
+// pairs the difference changes by far more than it scatters about that change.
+bool Drifts(std::vector<double> differences_ms) {
   constexpr std::size_t kParts = 3;
   constexpr std::size_t kFewest = 3 * kParts;
   constexpr double kFar_sigma = 5;
   constexpr double kTold_ms = 0.1;  // nobody sees less; some clocks tick in such steps
   if (differences_ms.size() < kFewest) return false;
-  const auto part = static_cast<std::ptrdiff_t>(differences_ms.size() / kParts);
-  const double first = Median({differences_ms.begin(), differences_ms.begin() + part});
-  const double last = Median({differences_ms.end() - part, differences_ms.end()});
-  // `jitter_ms` holds the drift itself, of which each third has a third.
-  return std::abs(last - first) > std::max(kTold_ms, kFar_sigma * jitter_ms / kParts);
+  const std::size_t part = differences_ms.size() / kParts;
+  const auto length = static_cast<std::ptrdiff_t>(part);
+  const double first = Median({differences_ms.begin(), differences_ms.begin() + length});
+  const double last = Median({differences_ms.end() - length, differences_ms.end()});
+  const double slope = (last - first) / static_cast<double>(differences_ms.size() - part);
+  for (std::size_t i = 0; i < differences_ms.size(); ++i) {
+    differences_ms[i] -= slope * static_cast<double>(i);
+  }
+  const double scatter_ms = SpreadAbout(Median(differences_ms), differences_ms);
+  return std::abs(last - first) > std::max(kTold_ms, kFar_sigma * scatter_ms);
 }
 
 void SummarizeDifferences(const std::vector<FramePair>& pairs, StreamFacts& stream) {
   std::vector<double> differences;
   for (const FramePair& pair : pairs) differences.push_back(DifferenceMs(pair));
   stream.skew_ms = Median(differences);
-  std::vector<double> deviations;
-  for (const double value : differences) deviations.push_back(std::abs(value - stream.skew_ms));
-  stream.jitter_ms = kSigmaPerMad * Median(deviations);
-  stream.free_running = stream.timed && Drifts(differences, stream.jitter_ms);
+  stream.jitter_ms = SpreadAbout(stream.skew_ms, differences);
+  stream.free_running = stream.timed && Drifts(std::move(differences));
 }
 
 void TakeReport(const LiveReport& report, StreamFacts& stream) {

@@ -74,7 +74,10 @@ double LiveRun::Tell(const PromptPose& prompt) {
           .count();
   const std::int64_t taken_ns = pairs_->HostTimeOf(prompt.timestamp_ns, prompt.exposure_us);
   const double latency_ms = kMsPerNs * static_cast<double>(now_ns - taken_ns);
-  if (prompt.body == 0) latency_ms_.Add(latency_ms);
+  if (prompt.pose != nullptr && prompt.frame != last_frame_) {  // once a pair, of several bodies
+    latency_ms_.Add(latency_ms);
+    last_frame_ = prompt.frame;
+  }
   view_.Tell(prompt, latency_ms);
   return latency_ms;
 }

@@ -66,7 +66,8 @@ class LiveRun {
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<LivePairs> pairs_;
   LiveView view_;
-  LevelHistogram latency_ms_;
+  LevelHistogram latency_ms_;  ///< of the pairs with a pose
+  std::int64_t last_frame_ = -1;
   LiveReport report_;
   std::optional<RecorderCounts> counts_;
   std::set<std::string> warnings_told_;

@@ -102,7 +102,7 @@ std::vector<std::string> LiveView::Alarms(const LiveReport& report,
     alarms.push_back(fmt::format("! {}: no pose for {:.0f} s", seen.name, lost_s));
   }
   if (report.dropped_pairs > dropped_shown_) {
-    alarms.push_back("! measuring is slower than the cameras: pairs are dropped");
+    alarms.emplace_back("! measuring is slower than the cameras: pairs are dropped");
   }
   dropped_shown_ = report.dropped_pairs;
   if (report.free_running) alarms.emplace_back("! the cameras do not take their images together");

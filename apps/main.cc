@@ -69,15 +69,12 @@ int Main(int argc, char** argv) {
   app.footer("Example: stereomotion track --left rec/cam0 --right rec/cam1 --body body.yaml");
   CommonOptions options;
   options.command_line.assign(argv, argv + argc);
-  const std::map<std::string, Run> commands = {{"calibrate", AddCalibrateCommand(app)},
-                                               {"track", AddTrackCommand(app)},
-                                               {"analyse", AddAnalyseCommand(app)},
-                                               {"simulate", AddSimulateCommand(app)},
-                                               {"convert", AddConvertCommand(app)},
-                                               {"print-target", AddPrintTargetCommand(app)},
-                                               {"cameras", AddCamerasCommand(app)},
-                                               {"check", AddCheckCommand(app)},
-                                               {"record", AddRecordCommand(app)}};
+  const std::map<std::string, Run> commands = {
+      {"calibrate", AddCalibrateCommand(app)}, {"track", AddTrackCommand(app)},
+      {"analyse", AddAnalyseCommand(app)},     {"simulate", AddSimulateCommand(app)},
+      {"convert", AddConvertCommand(app)},     {"print-target", AddPrintTargetCommand(app)},
+      {"cameras", AddCamerasCommand(app)},     {"check", AddCheckCommand(app)},
+      {"record", AddRecordCommand(app)}};
   for (const auto& [name, run] : commands) AddCommonOptions(*app.get_subcommand(name), options);
   RequireKnownCommand(argc, argv, commands);
   try {

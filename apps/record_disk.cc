@@ -56,15 +56,17 @@ double MeasureSpeed(const fs::path& folder, double most_bytes) {
 
 }  // namespace
 
-DiskState LookAtDisk(const fs::path& output, bool measure) {
-  const fs::path folder = FolderOf(output);
+double FreeBytes(const fs::path& output) {
   std::error_code error;
+  const fs::space_info space = fs::space(fs::absolute(output).parent_path(), error);
+  return error ? 0 : static_cast<double>(space.available);
+}
+
+DiskState LookAtDisk(const fs::path& output) {
+  const fs::path folder = FolderOf(output);
   DiskState disk;
-  disk.free_bytes = static_cast<double>(fs::space(folder, error).available);
-  if (error) throw OutputError(folder.string() + ": cannot be looked at: " + error.message());
-  if (measure) {
-    disk.write_bytes_s = MeasureSpeed(folder, std::min(kMostBytes, kSmallPart * disk.free_bytes));
-  }
+  disk.free_bytes = FreeBytes(output);
+  disk.write_bytes_s = MeasureSpeed(folder, std::min(kMostBytes, kSmallPart * disk.free_bytes));
   return disk;
 }
 

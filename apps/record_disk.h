@@ -11,9 +11,12 @@ struct DiskState {
   double write_bytes_s = 0;  ///< as measured; 0: not measured
 };
 
-/// Asks for the free room; `measure`: writes a file for a fraction of a second and removes it.
-/// Throws `OutputError` where nothing can be written there.
-DiskState LookAtDisk(const std::filesystem::path& output, bool measure);
+/// Asks for the free room and writes a file for a fraction of a second, which it removes. Makes the
+/// folder for the output. Throws `OutputError` where nothing can be written there.
+DiskState LookAtDisk(const std::filesystem::path& output);
+
+/// Asks for the free room; 0 where that is not known.
+double FreeBytes(const std::filesystem::path& output);
 
 /// Says in words for how long the room lasts at a rate.
 std::string RoomInWords(double free_bytes, double bytes_s);

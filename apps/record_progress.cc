@@ -69,7 +69,7 @@ void RecordProgress::Show(const LiveReport& report, const RecorderCounts& counts
 
 void RecordProgress::Draw(const LiveReport& report, const RecorderCounts& counts, double bytes_s) {
   const double rate_hz = report.period_s > 0 ? 1 / report.period_s : 0;
-  disk_.free_bytes = LookAtDisk(output_, /*measure=*/false).free_bytes;
+  disk_.free_bytes = FreeBytes(output_);
   const std::string line =
       fmt::format("\r{:.0f} s  {} pairs  {:.1f}/s  {} dropped  {:.0f} MB/s  disk: {}\x1b[K",
                   Seconds(Clock::now() - start_), counts.pairs, rate_hz, counts.dropped,

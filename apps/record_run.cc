@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -82,12 +83,18 @@ LiveReport Take(LivePairs& pairs, const Recorder& recorder, RecordProgress& prog
   CatchStopSignals();
   pairs.Start();
   std::atomic<bool> ended{false};
+  std::exception_ptr error;
   std::thread drain([&] {
-    Drain(pairs);
+    try {
+      Drain(pairs);
+    } catch (...) {
+      error = std::current_exception();
+    }
     ended = true;
   });
   Watch(pairs, recorder, ended, progress);
   drain.join();
+  if (error) std::rethrow_exception(error);
   progress.Show(pairs.report(), recorder.counts());
   return pairs.report();
 }
@@ -134,7 +141,7 @@ int RunLiveRecord(const RecordOptions& options, const CommonOptions& common) {
     throw UserError("--left " + options.left + ": is recorded already, expected a live camera " +
                     "(aravis:… or v4l2:…); --export makes image folders of a recording file");
   }
-  const DiskState disk = LookAtDisk(options.output, /*measure=*/true);
+  const DiskState disk = LookAtDisk(options.output);
   OpenedCameras opened = OpenCameras(cameras, options.live);
   RecorderOptions recording;
   recording.output = options.output;

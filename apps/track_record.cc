@@ -81,7 +81,8 @@ void AddInputs(const TrackOptions& options, const TrackInputs& inputs, RunRecord
   for (const auto& [side, role, path] :
        {std::tuple{Side::kLeft, "left", options.left}, {Side::kRight, "right", options.right}}) {
     if (inputs.recording == nullptr) {
-      record.inputs.push_back({role, path, ""});
+      const ResolvedCameras& live = inputs.cameras;
+      record.inputs.push_back({role, side == Side::kLeft ? live.left.live : live.right.live, ""});
       continue;
     }
     const std::string images = inputs.recording->InputDigest(side);

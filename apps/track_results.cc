@@ -151,7 +151,7 @@ int Finish(const fs::path& folder, const RunSummary& summary,
     return kDeviceFailed;
   }
   if (poses > 0 || summary.interrupted) return kDone;
-  fmt::print(stderr, "stereomotion: no pose in the whole recording ({}); see {}\n",
+  fmt::print(stderr, "stereomotion: no pose in the whole run ({}); see {}\n",
              MostFrequentLoss(summary), (folder / "poses.csv").string());
   return kNoAnswer;
 }

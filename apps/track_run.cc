@@ -113,10 +113,24 @@ bool IsSmallEnough(const Parts& parts, const fs::path& folder, RunRecord& record
   return false;
 }
 
-// The report last: `done` says that all files are there.
+// What comes after the measuring: the motion, and the report last: `done` says that all files are
+// there.
+MotionOutcome Conclude(const Parts& parts, const TrackInputs& inputs, const TrackOptions& options,
+                       RunWriter& writer, std::vector<BodyCourse>& courses, RunRecord& record) {
+  writer.WriteRecord(record);  // a second interrupt may end what follows
+  MotionOutcome motion;
+  const fs::path& folder = writer.folder();
+  if (options.motion && IsSmallEnough(parts, folder, record)) {
+    motion = AnalyseCourses(folder, inputs.setup, courses, record);
+  }
+  if (record.state == "running") record.state = "done";
+  WriteReport(folder, inputs, record, courses, motion.joints);
+  return motion;
+}
+
 int MeasureInto(const fs::path& folder, const TrackInputs& inputs, const TrackOptions& options,
                 const CommonOptions& common, RunRecord& record) {
-  Parts parts = OpenParts(inputs, options, common, record);
+  const Parts parts = OpenParts(inputs, options, common, record);
   RunWriter writer(folder, {inputs.setup.bodies, record.left_camera, record.right_camera},
                    /*overwrite=*/true, record);
   std::vector<BodyCourse> courses = StartCourses(inputs);
@@ -129,20 +143,15 @@ int MeasureInto(const fs::path& folder, const TrackInputs& inputs, const TrackOp
     Close(parts, record);
     AddInputs(options, inputs, record);
     if (failure) throw OutputError(*failure);
-    writer.WriteRecord(record);  // a second interrupt may end what follows
-    if (options.motion && IsSmallEnough(parts, folder, record)) {
-      motion = AnalyseCourses(folder, inputs.setup, courses, record);
-    }
-    if (record.state == "running") record.state = "done";
-    WriteReport(folder, inputs, record, courses, motion.joints);
+    motion = Conclude(parts, inputs, options, writer, courses, record);
   } catch (const OutputError&) {
     record.state = "output_failed";
     writer.WriteRecord(record);
     throw;
   }
   writer.WriteRecord(record);
-  return Finish(folder, record.summary, courses, motion, common,
-                parts.live != nullptr ? parts.live->problem() : "",
+  const std::string problem = parts.live != nullptr ? parts.live->problem() : "";
+  return Finish(folder, record.summary, courses, motion, common, problem,
                 options.stream == "-" ? stderr : stdout);
 }
 

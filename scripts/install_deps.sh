@@ -19,7 +19,7 @@ for argument in "$@"; do
   case $argument in
     --lint) packages+=(clang-tidy clang-format) ;;
     # Tests of live cameras: a network and a kernel of their own; other readers of our files.
-    --tests) packages+=(iproute2 util-linux qemu-system-x86 busybox-static cpio binutils
+    --tests) packages+=(iproute2 util-linux qemu-system-x86 busybox-static cpio make libelf1
       v4l-utils python3-h5py python3-zmq) ;;
     --plots) packages+=(python3-matplotlib) ;;
     --fuzz) packages+=(clang libclang-rt-dev) ;;

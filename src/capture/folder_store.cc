@@ -112,7 +112,7 @@ class CameraFolder {
 
 class FolderStore : public FrameStore {
  public:
-  FolderStore(const RecorderOptions& options, const DiskCalls& disk) : disk_(disk) {
+  FolderStore(const RecorderOptions& options, DiskCalls disk) : disk_(std::move(disk)) {
     for (std::size_t side = 0; side < 2; ++side) {
       cameras_[side] = std::make_unique<CameraFolder>(options.output / options.names[side], disk_);
     }

@@ -1,6 +1,7 @@
 #include "pixel_formats.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <vector>
 
@@ -10,39 +11,66 @@
 namespace stereomotion {
 namespace {
 
-/// Says how a row of a format is stored: so many pixels take so many bytes.
+enum class Storage {
+  kNone,
+  kByte,
+  kWord,
+  k10p,
+  k12p,
+  k10Packed,
+  k12Packed,
+  kRgb,
+  kBgr,
+  kYuyv,
+  kUyvy
+};
+
+struct Traits {
+  Storage storage;
+  int bits;
+};
+
+// In the order of `PixelFormat`.
+constexpr std::array<Traits, 24> kTraits{{
+    {Storage::kNone, 8},       // kUnknown
+    {Storage::kByte, 8},       // kGrey8
+    {Storage::kWord, 10},      // kGrey10
+    {Storage::kWord, 12},      // kGrey12
+    {Storage::kWord, 14},      // kGrey14
+    {Storage::kWord, 16},      // kGrey16
+    {Storage::k10p, 10},       // kGrey10p
+    {Storage::k12p, 12},       // kGrey12p
+    {Storage::k10Packed, 10},  // kGrey10Packed
+    {Storage::k12Packed, 12},  // kGrey12Packed
+    {Storage::kByte, 8},       // kBayer8
+    {Storage::kWord, 10},      // kBayer10
+    {Storage::kWord, 12},      // kBayer12
+    {Storage::kWord, 16},      // kBayer16
+    {Storage::k10p, 10},       // kBayer10p
+    {Storage::k12p, 12},       // kBayer12p
+    {Storage::k10Packed, 10},  // kBayer10Packed
+    {Storage::k12Packed, 12},  // kBayer12Packed
+    {Storage::kRgb, 8},        // kRgb8
+    {Storage::kBgr, 8},        // kBgr8
+    {Storage::kYuyv, 8},       // kYuyv
+    {Storage::kUyvy, 8},       // kUyvy
+    {Storage::kByte, 8},       // kNv12
+    {Storage::kNone, 8},       // kMjpg
+}};
+
+const Traits& TraitsOf(PixelFormat format) { return kTraits[static_cast<std::size_t>(format)]; }
+
+/// So many pixels take so many bytes.
 struct Packing {
   int pixels, bytes;
 };
 
+// In the order of `Storage`.
+constexpr std::array<Packing, 11> kPackings{
+    {{1, 0}, {1, 1}, {1, 2}, {4, 5}, {2, 3}, {2, 3}, {2, 3}, {1, 3}, {1, 3}, {2, 4}, {2, 4}}};
+
 Packing PackingOf(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kGrey8:
-    case PixelFormat::kBayer8:
-    case PixelFormat::kNv12:
-      return {1, 1};
-    case PixelFormat::kGrey10p:
-    case PixelFormat::kBayer10p:
-      return {4, 5};
-    case PixelFormat::kGrey12p:
-    case PixelFormat::kGrey10Packed:
-    case PixelFormat::kGrey12Packed:
-    case PixelFormat::kBayer12p:
-    case PixelFormat::kBayer10Packed:
-    case PixelFormat::kBayer12Packed:
-      return {2, 3};
-    case PixelFormat::kRgb8:
-    case PixelFormat::kBgr8:
-      return {1, 3};
-    case PixelFormat::kYuyv:
-    case PixelFormat::kUyvy:
-      return {2, 4};
-    case PixelFormat::kUnknown:
-    case PixelFormat::kMjpg:
-      return {1, 0};
-    default:
-      return {1, 2};
-  }
+  return kPackings[static_cast<std::size_t>(TraitsOf(format).storage)];
 }
 
 std::size_t BytesOfRow(PixelFormat format, int width_px) {
@@ -61,31 +89,27 @@ int RowsOf(PixelFormat format, int height_px) {
 }
 
 void ConvertRow(const std::uint8_t* in, PixelFormat format, int width_px, int v, Image& image) {
-  switch (format) {
-    case PixelFormat::kGrey10p:
-    case PixelFormat::kBayer10p:
-      return Unpack10p(in, width_px, image.Row<std::uint16_t>(v));
-    case PixelFormat::kGrey12p:
-    case PixelFormat::kBayer12p:
-      return Unpack12p(in, width_px, image.Row<std::uint16_t>(v));
-    case PixelFormat::kGrey10Packed:
-    case PixelFormat::kBayer10Packed:
-      return Unpack10Packed(in, width_px, image.Row<std::uint16_t>(v));
-    case PixelFormat::kGrey12Packed:
-    case PixelFormat::kBayer12Packed:
-      return Unpack12Packed(in, width_px, image.Row<std::uint16_t>(v));
-    case PixelFormat::kRgb8:
-      return LuminanceOfRgb(in, 0, width_px, image.Row<std::uint8_t>(v));
-    case PixelFormat::kBgr8:
-      return LuminanceOfRgb(in, 2, width_px, image.Row<std::uint8_t>(v));
-    case PixelFormat::kYuyv:
-      return TakeEverySecond(in, 0, width_px, image.Row<std::uint8_t>(v));
-    case PixelFormat::kUyvy:
-      return TakeEverySecond(in, 1, width_px, image.Row<std::uint8_t>(v));
-    default: {  // little-endian cameras on little-endian hosts: the bytes are the values
-      const std::size_t bytes = static_cast<std::size_t>(PackingOf(format).bytes);
-      std::memcpy(image.Row<std::uint8_t>(v), in, bytes * static_cast<std::size_t>(width_px));
-    }
+  auto* words = image.Row<std::uint16_t>(v);
+  auto* bytes = image.Row<std::uint8_t>(v);
+  switch (TraitsOf(format).storage) {
+    case Storage::k10p:
+      return Unpack10p(in, width_px, words);
+    case Storage::k12p:
+      return Unpack12p(in, width_px, words);
+    case Storage::k10Packed:
+      return Unpack10Packed(in, width_px, words);
+    case Storage::k12Packed:
+      return Unpack12Packed(in, width_px, words);
+    case Storage::kRgb:
+      return LuminanceOfRgb(in, 0, width_px, bytes);
+    case Storage::kBgr:
+      return LuminanceOfRgb(in, 2, width_px, bytes);
+    case Storage::kYuyv:
+      return TakeEverySecond(in, 0, width_px, bytes);
+    case Storage::kUyvy:
+      return TakeEverySecond(in, 1, width_px, bytes);
+    default:  // little-endian cameras on little-endian hosts: the bytes are the values
+      std::memcpy(bytes, in, BytesOfRow(format, width_px));
   }
 }
 
@@ -127,33 +151,11 @@ std::string DecodeJpeg(const std::uint8_t* data, const ImageLayout& layout, Imag
   return Fail(image, "is a JPEG of another size than agreed on");
 }
 
+static_assert(kTraits.size() == static_cast<std::size_t>(PixelFormat::kMjpg) + 1);
+
 }  // namespace
 
-int GreyBits(PixelFormat format) {
-  switch (format) {
-    case PixelFormat::kGrey10:
-    case PixelFormat::kGrey10p:
-    case PixelFormat::kGrey10Packed:
-    case PixelFormat::kBayer10:
-    case PixelFormat::kBayer10p:
-    case PixelFormat::kBayer10Packed:
-      return 10;
-    case PixelFormat::kGrey12:
-    case PixelFormat::kGrey12p:
-    case PixelFormat::kGrey12Packed:
-    case PixelFormat::kBayer12:
-    case PixelFormat::kBayer12p:
-    case PixelFormat::kBayer12Packed:
-      return 12;
-    case PixelFormat::kGrey14:
-      return 14;
-    case PixelFormat::kGrey16:
-    case PixelFormat::kBayer16:
-      return 16;
-    default:
-      return 8;
-  }
-}
+int GreyBits(PixelFormat format) { return TraitsOf(format).bits; }
 
 std::size_t BytesOfImage(PixelFormat format, int width_px, int height_px) {
   return BytesOfRow(format, width_px) * static_cast<std::size_t>(RowsOf(format, height_px));

@@ -12,9 +12,9 @@
 namespace stereomotion {
 namespace {
 
-// Twice in this time makes less than the second that a power cut may cost: what one call brings to
-// the disk is believed from the next one on.
-constexpr std::chrono::milliseconds kFlushEvery{400};
+// A power cut may cost a second. What one call brings to the disk is believed once the next one has
+// brought the note of it there: two of these times, and twice what a call lasts.
+constexpr std::chrono::milliseconds kFlushEvery{250};
 
 std::int64_t BytesOf(const Frame* frame) {
   if (frame == nullptr) return 0;

@@ -19,7 +19,9 @@ std::string SizeProblem(const RigCamera& camera, const Frame& frame) {
 
 /// Says why a pair cannot be measured, `detail` in words; kOk where it can.
 PoseStatus FindFault(const MeasureSetup& setup, const FramePair& frames, std::string& detail) {
-  if (frames.left.dropped || frames.right.dropped) return PoseStatus::kDropped;
+  if (frames.left.dropped || frames.right.dropped) {  // a lone image would not have been measured
+    return frames.right.index < 0 ? PoseStatus::kNoPair : PoseStatus::kDropped;
+  }
   const auto& cameras = setup.rig.cameras;
   detail = SizeProblem(cameras[static_cast<std::size_t>(setup.left_camera)], frames.left);
   if (detail.empty()) {

@@ -165,9 +165,9 @@ class BadInput(FolderCase):
             result = self.track("--body", "body.yaml", "--body", "other.yaml")
             self.refused(2, "other.yaml", text, result=result)
 
-    def test_live_camera(self):
-        self.refused(2, "not built yet", result=self.track("--left", "aravis:Basler-1"))
-        self.refused(2, "not built yet", result=self.track("--left", "rec.h5:cam0"))
+    def test_one_stream_of_another_kind(self):
+        self.refused(2, "one is a live camera", result=self.track("--left", "aravis:Basler-1"))
+        self.refused(2, "rec.h5", result=self.track("--left", "rec.h5:cam0"))
 
     def test_swapped_cameras(self):
         """Each image goes to the other camera: no pose, and the program says why."""
@@ -244,9 +244,10 @@ class BadInput(FolderCase):
                      result=self.track("--fps", "30"))
 
     def test_unknown_command(self):
-        result = run("record", "--output", "rec", cwd=self.dir)
-        self.refused(2, "this version has no command 'record', expected one of analyse, calibrate, "
-                     "convert, print-target, simulate, track", result=result)
+        result = run("export", "--to", "c3d", cwd=self.dir)
+        self.refused(2, "this version has no command 'export', expected one of analyse, calibrate, "
+                     "cameras, check, convert, print-target, record, simulate, track",
+                     result=result)
         self.assertNotIn("did you mean", result.stderr)
         self.refused(2, "did you mean 'track'?", result=run("trak", cwd=self.dir))
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Runs `check` on recordings that are as they should be, and on spoilt ones: it must say what is wrong.
+"""Runs `check` on recordings that are as they should be, and on spoilt ones: what is wrong is said.
 
 Usage: check_test.py PATH/TO/stereomotion [unittest options]
 The recordings are rendered by the program itself; Python's standard library is all it takes.
@@ -20,9 +20,10 @@ motion:
   axis: [0, 0.3, 1]
   rate_rad_s: %g
 %s
-frames: 12
+frames: %d
 fps: 30
 """
+MANY, FEW = 10, 3  # the fewest that tell a drift; as few as tell the rest, for rendering takes time
 # The cameras see one rod and a half of it; the file says two.
 HALF_BODY = BODY[:BODY.index("  - name: B")].replace(",[15,-60,0],[100,-60,0]]", "]")
 SMALL_BODY = BODY.replace("ball_diameter_mm: 20", "ball_diameter_mm: 6")
@@ -33,7 +34,7 @@ class Check(FolderCase):
     def setUpClass(cls):
         super().setUpClass()
         cls.write(rig=RIG, noisy=RIG + NOISE, body=BODY, half=HALF_BODY, small=SMALL_BODY)
-        cls.render("good")
+        cls.render("good", frames=MANY)
         cls.render("dark", "light: {ball_level: 0.012, background_level: 0.004}")
         cls.render("bright", "light: {ball_level: 1.3}")
         cls.render("glaring", "light: {ball_level: 4}")
@@ -44,8 +45,8 @@ class Check(FolderCase):
         cls.render("small", body="small.yaml")
 
     @classmethod
-    def render(cls, name, more="", body="body.yaml", rate=1.5):
-        cls.simulate(SCENARIO % ("rig.yaml", body, rate, more), name)
+    def render(cls, name, more="", body="body.yaml", rate=1.5, frames=FEW):
+        cls.simulate(SCENARIO % ("rig.yaml", body, rate, more, frames), name)
 
     def check(self, rec, *more, left=None, right=None):
         return run("check", "--left", left or f"{rec}/cam0", "--right", right or f"{rec}/cam1",
@@ -179,7 +180,8 @@ class Check(FolderCase):
         for camera in ("cam0", "cam1"):
             (folder / camera).mkdir(parents=True)
             for i in range(8):
-                pixels = bytes((u * 7 + v * 13 + i * 5) % 3 + 2 for v in range(96) for u in range(128))
+                pixels = bytes((u * 7 + v * 13 + i * 5) % 3 + 2
+                               for v in range(96) for u in range(128))
                 (folder / camera / f"{i}.pgm").write_bytes(b"P5\n128 96\n255\n" + pixels)
         found = self.findings("nothing", "--fps", 30, code=1)
         self.assertEqual(found["balls"]["verdict"], "mend")

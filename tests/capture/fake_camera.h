@@ -23,8 +23,9 @@ class FakeCamera : public CameraDevice {
     std::string uri = "fake:left";
     std::string clock;  ///< what `clock()` says
     int width_px = 64, height_px = 48;
-    Clock::time_point zero;  ///< host time of true time zero: alike for both cameras
-    bool comes_back = true;  ///< after an outage
+    Clock::time_point zero;           ///< host time of true time zero: alike for both cameras
+    bool comes_back = true;           ///< after an outage
+    std::int64_t mute_after_ns = -1;  ///< true time from which it answers but sends no image
     std::atomic<int>* triggers = nullptr;
     std::atomic<int>* opened = nullptr;  ///< counts `Reopen`
   };
@@ -53,6 +54,9 @@ class FakeCamera : public CameraDevice {
     if (next_ >= frames_.size()) return Sleep(until, DeviceEvent::kNothing);
     const SimulatedFrame& coming = frames_[next_];
     if (coming.epoch > epoch_) return DeviceEvent::kLost;
+    if (options_.mute_after_ns >= 0 && coming.instant_ns >= options_.mute_after_ns) {
+      return Sleep(until, DeviceEvent::kNothing);
+    }
     const Clock::time_point arrival = TimeOf(HostNs(coming));
     if (arrival > until) return Sleep(until, DeviceEvent::kNothing);
     std::this_thread::sleep_until(arrival);

@@ -81,7 +81,7 @@ TEST(PairQueue, AnOrphanIsNoPair) {
 TEST(PairQueue, SeveralReadersGetEveryPairOnce) {
   FramePool pool;
   PairQueue queue({1000, 1 << 30});
-  constexpr std::int64_t kPairs = 2000;
+  constexpr std::int64_t kPairs = 500;  // a reader that is held up is not overtaken by more
   std::atomic<std::int64_t> next{0};
   std::array<std::set<std::int64_t>, 3> seen;
   std::vector<std::thread> readers;
@@ -89,7 +89,9 @@ TEST(PairQueue, SeveralReadersGetEveryPairOnce) {
     readers.emplace_back([&] {
       FramePair pair;
       for (std::int64_t at = next++; queue.Read(at, pair); at = next++) {
-        if (testing::ReadInstant(pair.right.image) == at) mine.insert(at);
+        if (!pair.right.image.empty() && testing::ReadInstant(pair.right.image) == at) {
+          mine.insert(at);
+        }
       }
     });
   }

@@ -47,6 +47,7 @@ struct SimulatedCamera {
   std::int64_t clock_ns = 0;  ///< device − true time at the start
   double drift = 0;           ///< of its clock, ns a ns
   double stamp_jitter_ns = 1000;
+  bool stamps_arrival = false;       ///< its driver knows no better time
   std::int64_t delay_ns = 2 * kMs;   ///< the shortest
   double delay_jitter_ns = 300'000;  ///< mean of what comes on top, exponential
   double lost = 0;                   ///< share of images that never arrive
@@ -54,6 +55,7 @@ struct SimulatedCamera {
   std::vector<Outage> outages;
   std::vector<Stall> silences;  ///< images taken then are lost
   std::vector<ClockStep> clock_steps;
+  std::int64_t late_by_ns = 0, late_until_ns = 0;  ///< all its images at first
   std::int64_t first_id = 0;
   std::int64_t forgets_number_at_ns = -1;  ///< from then on its numbers are one behind
 };
@@ -111,12 +113,14 @@ inline std::vector<SimulatedFrame> Simulate(const SimulatedCamera& camera, int n
     std::int64_t set_ns = 0;
     for (const ClockStep& step : camera.clock_steps) set_ns += at_ns >= step.at_ns ? step.by_ns : 0;
     std::int64_t host_ns = at_ns + static_cast<std::int64_t>(delay_ns);
+    if (at_ns < camera.late_until_ns) host_ns += camera.late_by_ns;
     for (const Stall& stall : camera.stalls) {
       if (host_ns >= stall.from_ns) host_ns = std::max(host_ns, stall.from_ns + stall.for_ns);
     }
     host_ns = std::max(host_ns, last_host_ns + 1000);
     last_host_ns = host_ns;
-    const double device_ns = static_cast<double>(at_ns) * (1 + camera.drift) + stamp_ns;
+    const std::int64_t stamped_ns = camera.stamps_arrival ? host_ns : at_ns;
+    const double device_ns = static_cast<double>(stamped_ns) * (1 + camera.drift) + stamp_ns;
     frames.push_back({number, at_ns, k - id_base,
                       clock_ns + set_ns + static_cast<std::int64_t>(device_ns),
                       kHostAtZeroNs + host_ns, epoch});

@@ -86,4 +86,18 @@ class V4l2Test : public ::testing::Test {
   DeviceFrame frame;
 };
 
+/// The same camera with a known exposure.
+class V4l2StreamTest : public V4l2Test {
+ protected:
+  static constexpr std::int64_t kHalfExposureNs = 1'000'000;
+
+  V4l2StreamTest() {
+    AddControl(V4L2_CID_EXPOSURE_ABSOLUTE, {"Exposure", V4L2_CTRL_TYPE_INTEGER, 1, 100,
+                                            kHalfExposureNs / 50'000});  // in 100 µs
+  }
+  DeviceEvent Next(const std::unique_ptr<CameraDevice>& camera) {
+    return camera->Next(kWait, frame);
+  }
+};
+
 }  // namespace stereomotion::testing

@@ -105,7 +105,7 @@ TEST_F(V4l2ControlsTest, RefusedReadOnlyOrHeldControlsAreErrors) {
 TEST_F(V4l2ControlsTest, ModesAreSetBeforeTheValuesThatTheyOpen) {
   // This camera drops the exposure time when it changes its mode.
   class Forgetful : public FakeKernel {
-    int Control(int descriptor, unsigned long request, void* argument) override {
+    int Control(int descriptor, std::uint64_t request, void* argument) override {
       const int result = FakeKernel::Control(descriptor, request, argument);
       auto* controls = static_cast<v4l2_ext_controls*>(argument);
       if (request == VIDIOC_S_EXT_CTRLS && controls->controls->id == V4L2_CID_EXPOSURE_AUTO) {

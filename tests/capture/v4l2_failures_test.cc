@@ -8,7 +8,7 @@ namespace stereomotion::testing {
 namespace {
 
 struct Failure {
-  unsigned long request;
+  std::uint64_t request;
   int error;
   const char* call;
   const char* advice;

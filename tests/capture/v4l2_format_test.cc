@@ -68,7 +68,7 @@ TEST_F(V4l2Test, FormatsThatAreNotOfferedOrNotReadAreRefused) {
 TEST_F(V4l2Test, ASilentlyChangedFormatIsRefused) {
   // The driver offers GREY, but goes on with YUYV.
   class Stubborn : public FakeKernel {
-    int Control(int descriptor, unsigned long request, void* argument) override {
+    int Control(int descriptor, std::uint64_t request, void* argument) override {
       auto* format = static_cast<v4l2_format*>(argument);
       if (request == VIDIOC_S_FMT) format->fmt.pix.pixelformat = V4L2_PIX_FMT_YUYV;
       return FakeKernel::Control(descriptor, request, argument);
@@ -103,7 +103,7 @@ TEST_F(V4l2Test, ARegionIsCroppedWhereTheDriverCan) {
 
 TEST_F(V4l2Test, ARegionThatMovesWithTheSizeIsRefused) {
   class Mover : public FakeKernel {
-    int Control(int descriptor, unsigned long request, void* argument) override {
+    int Control(int descriptor, std::uint64_t request, void* argument) override {
       const int result = FakeKernel::Control(descriptor, request, argument);
       if (request == VIDIOC_S_FMT) devices.at("/dev/video0").crop = {0, 0, 8, 4};
       return result;

@@ -48,7 +48,7 @@ TEST_F(V4l2Test, FailuresOfOpeningSayWhatToDo) {
 
 TEST_F(V4l2Test, InterruptedCallsAreMadeAgain) {
   kernel->open_failures = {EINTR, EINTR};
-  for (const unsigned long request : {VIDIOC_QUERYCAP, VIDIOC_S_FMT, VIDIOC_STREAMON}) {
+  for (const std::uint64_t request : {VIDIOC_QUERYCAP, VIDIOC_S_FMT, VIDIOC_STREAMON}) {
     kernel->failures[request] = {EINTR, EINTR};
   }
   EXPECT_EQ(ErrorOf(), "no error");

@@ -2,9 +2,9 @@
 //
 // usage: same_images LEFT RIGHT OTHER_LEFT OTHER_RIGHT
 
-#include <cstdio>
 #include <cstring>
 #include <exception>
+#include <iostream>
 
 #include "stereomotion/capture/recording.h"
 
@@ -31,8 +31,7 @@ int Compare(char** paths) {
   const auto first = stereomotion::OpenRecording(paths[1], paths[2]);
   const auto second = stereomotion::OpenRecording(paths[3], paths[4]);
   if (first->size() != second->size()) {
-    std::printf("%lld and %lld pairs\n", static_cast<long long>(first->size()),
-                static_cast<long long>(second->size()));
+    std::cout << first->size() << " and " << second->size() << " pairs\n";
     return 1;
   }
   FramePair a;
@@ -42,11 +41,11 @@ int Compare(char** paths) {
     second->Read(i, b);
     if (!Same(a.left.image.View(), b.left.image.View()) ||
         !Same(a.right.image.View(), b.right.image.View())) {
-      std::printf("pair %lld differs\n", static_cast<long long>(i));
+      std::cout << "pair " << i << " differs\n";
       return 1;
     }
   }
-  std::printf("%lld pairs are the same\n", static_cast<long long>(first->size()));
+  std::cout << first->size() << " pairs are the same\n";
   return 0;
 }
 
@@ -58,7 +57,7 @@ int main(int count, char** arguments) {
   try {
     return Compare(arguments);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "same_images: %s\n", error.what());
+    std::cerr << "same_images: " << error.what() << "\n";
     return 2;
   }
 }

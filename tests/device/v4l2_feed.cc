@@ -11,10 +11,11 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -73,7 +74,7 @@ class OutputDevice {
   }
 
  private:
-  void Control(unsigned long request, void* argument) {
+  void Control(std::uint64_t request, void* argument) {
     if (ioctl(descriptor_, request, argument) != 0) {
       throw std::runtime_error(path_ + ": is no v4l2loopback device, or in use");
     }
@@ -92,8 +93,7 @@ void Feed(char** arguments) {
   }
   OutputDevice left(arguments[2], pairs.at(0).left.image.View());
   OutputDevice right(arguments[4], pairs.at(0).right.image.View());
-  std::puts("feed: ready");
-  std::fflush(stdout);
+  std::cout << "feed: ready" << std::endl;
   while (!left.HasReader() || !right.HasReader()) std::this_thread::sleep_for(kLookAgain);
   std::this_thread::sleep_for(kReaderStarts);
   const std::chrono::duration<double> period(1 / std::atof(arguments[5]));
@@ -104,8 +104,7 @@ void Feed(char** arguments) {
     right.Write(pair.right.image.View());
     due += std::chrono::duration_cast<std::chrono::steady_clock::duration>(period);
   }
-  std::puts("feed: done");
-  std::fflush(stdout);
+  std::cout << "feed: done" << std::endl;
   pause();
 }
 
@@ -114,13 +113,13 @@ void Feed(char** arguments) {
 int main(int count, char** arguments) {
   constexpr int kArguments = 6;
   if (count != kArguments) {
-    std::fputs("usage: v4l2_feed REC/cam0 /dev/videoA REC/cam1 /dev/videoB RATE_HZ\n", stderr);
+    std::cerr << "usage: v4l2_feed REC/cam0 /dev/videoA REC/cam1 /dev/videoB RATE_HZ\n";
     return 2;
   }
   try {
     Feed(arguments);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "v4l2_feed: %s\n", error.what());
+    std::cerr << "v4l2_feed: " << error.what() << "\n";
     return 1;
   }
   return 0;

@@ -23,7 +23,6 @@ mount -t 9p -o $share,cache=loose,ro host /host
 mount -t devtmpfs dev /host/dev; mount -t proc proc /host/proc; mount -t sysfs sys /host/sys
 mkdir -p /host/dev/shm && mount -t tmpfs shm /host/dev/shm
 mount -t 9p -o $share results /host/mnt
-mount -t tmpfs tmp /host/tmp
 ip link set lo up
 echo "STARTED after $(cut -d' ' -f1 /proc/uptime) s"
 chroot /host /bin/bash /mnt/command.sh

@@ -88,6 +88,10 @@ TEST_F(AravisFaults, ControlledCameraIsNamedAndFreedWhenItsProgramEnds) {
   const std::string error = ErrorOf("aravis:127.0.0.1");
   EXPECT_TRUE(Contains(error, "aravis:127.0.0.1: the camera is controlled by another program"))
       << error;
+  const std::vector<DeviceInfo> cameras = ListCameras();
+  ASSERT_FALSE(cameras.empty());
+  EXPECT_TRUE(Contains(cameras[0].problem, "controlled by another program"));
+  EXPECT_EQ(cameras[0].width_px, 640) << "it may be asked all the same";
   DeviceFrame frame;
   EXPECT_TRUE(WaitFor(*first, DeviceEvent::kFrame, frame)) << "the first one goes on";
   first.reset();

@@ -150,6 +150,9 @@ class LiveCase(FolderCase):
         self.dir = self.base / self.id().rsplit(".", 1)[-1]
         self.dir.mkdir()
 
+        began = time.monotonic()
+        self.addCleanup(lambda: print(f"{self.id()}: {time.monotonic() - began:.1f} s"))
+
     def camera(self, name, *more):
         address, serial = ("127.0.0.1", "L") if name == "cam0" else ("127.0.0.2", "R")
         return ["--camera", name, "--address", address, "--serial", serial, *more]
@@ -208,6 +211,28 @@ class LiveCase(FolderCase):
         self.assertEqual(times, sorted(times), "times must not go back")
         self.assertEqual(len(set(times)), len(times), "a time comes twice")
         return table
+
+    def stamps(self, camera, recording="rec"):
+        """Reads the pair's number and the true time [us] of every recorded image."""
+        found = {}
+        folder = self.dir / recording / camera
+        for row in rows(folder / "timestamps.csv"):
+            if int(row["pair"]) < 0:
+                continue
+            with open(folder / f"{int(row['frame']):06d}.pgm", "rb") as image:
+                for _ in range(3):  # P5, size, largest value
+                    image.readline()
+                found[int(row["pair"])] = int.from_bytes(image.read(8), "little", signed=True)
+        return found
+
+    def check_stamps(self, most_us=0, least=1, recording="rec"):
+        """The server wrote into each image when it was taken: both of a pair at one time."""
+        left, right = self.stamps("cam0", recording), self.stamps("cam1", recording)
+        self.assertEqual(left.keys(), right.keys())
+        wrong = [(pair, time_us, right[pair]) for pair, time_us in left.items()
+                 if abs(right[pair] - time_us) > most_us]
+        self.assertEqual(wrong[:5], [], f"{len(wrong)} of {len(left)} pairs are wrong")
+        self.assertGreaterEqual(len(left), least)
 
     @staticmethod
     def statuses(table):

@@ -41,7 +41,7 @@ int FakeKernel::Open(const std::string& path) {
 
 void FakeKernel::Close(int descriptor) { open_.erase(open_.find(descriptor)); }
 
-int FakeKernel::Control(int descriptor, unsigned long request, void* argument) {
+int FakeKernel::Control(int descriptor, std::uint64_t request, void* argument) {
   if (const int error = Take(failures[request]); error != 0) return -error;
   const auto found = devices.find(open_.at(descriptor));
   if (found == devices.end()) return -ENODEV;

@@ -20,7 +20,7 @@ struct FakeControl {
   std::int64_t lowest = 0, highest = 255, value = 0;
   std::uint32_t flags = 0;
   std::map<std::int64_t, std::string> menu{};  ///< of V4L2_CTRL_TYPE_INTEGER_MENU: numbers
-  std::int64_t keeps = -1;                   ///< takes this value whatever is set; −1: obeys
+  std::int64_t keeps = -1;                     ///< takes this value whatever is set; −1: obeys
 };
 
 /// An image that the scripted camera will deliver.
@@ -64,13 +64,13 @@ class FakeKernel : public v4l2::Kernel {
  public:
   std::map<std::string, FakeDevice> devices;
   /// errno for the next calls, by request (VIDIOC_…); one a call.
-  std::map<unsigned long, std::deque<int>> failures;
+  std::map<std::uint64_t, std::deque<int>> failures;
   std::deque<int> open_failures, map_failures, poll_failures;
   std::int64_t now_ns = 5'000'000'000;
 
   int Open(const std::string& path) override;
   void Close(int descriptor) override;
-  int Control(int descriptor, unsigned long request, void* argument) override;
+  int Control(int descriptor, std::uint64_t request, void* argument) override;
   void* Map(int descriptor, std::size_t bytes, std::int64_t offset, int& error) override;
   void Unmap(void* memory, std::size_t bytes) override;
   int Poll(int descriptor, int at_most_ms) override;

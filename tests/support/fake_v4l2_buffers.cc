@@ -65,7 +65,7 @@ int Deliver(FakeDevice& device, v4l2_buffer& buffer) {
 
 }  // namespace
 
-int AnswerBufferCall(FakeDevice& device, unsigned long request, void* argument) {
+int AnswerBufferCall(FakeDevice& device, std::uint64_t request, void* argument) {
   switch (request) {
     case VIDIOC_REQBUFS:
       return Request(device, *static_cast<v4l2_requestbuffers*>(argument));

@@ -35,7 +35,7 @@ int DescribeChoice(const FakeDevice& device, v4l2_querymenu& item) {
 
 }  // namespace
 
-int AnswerControlCall(FakeDevice& device, unsigned long request, void* argument) {
+int AnswerControlCall(FakeDevice& device, std::uint64_t request, void* argument) {
   switch (request) {
     case VIDIOC_QUERY_EXT_CTRL:
       return DescribeNext(device, *static_cast<v4l2_query_ext_ctrl*>(argument));

@@ -82,7 +82,7 @@ int AnswerRegion(FakeDevice& device, bool set, v4l2_selection& selection) {
 
 }  // namespace
 
-int AnswerFormatCall(FakeDevice& device, unsigned long request, void* argument) {
+int AnswerFormatCall(FakeDevice& device, std::uint64_t request, void* argument) {
   switch (request) {
     case VIDIOC_ENUM_FMT: {
       auto& description = *static_cast<v4l2_fmtdesc*>(argument);

@@ -7,7 +7,8 @@
 
 namespace stereomotion::testing {
 
-/// Runs `stereomotion_gv_server` (the path in `program`) as long as the object lives.
+/// Runs `stereomotion_gv_server` (the path in `program`) as long as the object lives, and no longer
+/// than the thread that started it (so that a test that crashes leaves nothing behind).
 class GvProcess {
  public:
   /// Waits until it serves; throws `std::runtime_error` where it does not.

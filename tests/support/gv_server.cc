@@ -81,7 +81,8 @@ void Serve(const GvServerPlan& plan) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  constexpr int kNice = -10;  // a camera does not wait for other programs; nothing without the right
+  constexpr int kNice =
+      -10;  // a camera does not wait for other programs; nothing without the right
   setpriority(PRIO_PROCESS, 0, kNice);
   try {
     std::signal(SIGINT, [](int) { interrupted = 1; });

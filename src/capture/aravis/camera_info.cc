@@ -34,17 +34,16 @@ std::string PtpClock(ArvCamera* camera, const PtpNames& names) {
   return error || id == 0 ? "" : "ptp:" + std::to_string(static_cast<guint64>(id));
 }
 
-// A camera that another program controls tells this, but not the rest.
 void AskCamera(DeviceInfo& info) {
   try {
-    constexpr std::chrono::milliseconds kNoPatience(0);
     const std::string name = info.uri.substr(std::string("aravis:").size());
     const GObjectPtr<ArvCamera> camera =
-        OpenAravisCamera(info.address.empty() ? name : info.address, info.uri, kNoPatience);
+        LookAtAravisCamera(info.address.empty() ? name : info.address, info.uri);
     const DeviceInfo listed = info;
     info = ReadCameraInfo(camera.get(), listed.uri);
     info.protocol = listed.protocol;
     info.serial = listed.serial;
+    if (!IsControlled(camera.get())) info.problem = kControlledByOthers;
   } catch (const DeviceError& error) {
     info.problem = error.what();
   }

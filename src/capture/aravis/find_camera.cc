@@ -67,20 +67,28 @@ std::string FindId(const std::string& name, const std::string& uri) {
   return fitting.front().uri.substr(std::string("aravis:").size());
 }
 
+// Opening has asked for control once.
 void TakeControl(ArvCamera* camera, const std::string& uri, steady_clock::time_point until) {
   constexpr std::chrono::milliseconds kPause(200);
   while (!IsControlled(camera)) {
-    GErrorSlot error;
-    if (arv_gv_device_take_control(ARV_GV_DEVICE(arv_camera_get_device(camera)), error.out()) !=
-        0) {
-      return;
-    }
-    if (steady_clock::now() >= until) {
-      throw DeviceError(uri + ": the camera is controlled by another program; end that program" +
-                        " (a camera frees itself 3 s after its program died)");
-    }
+    if (steady_clock::now() >= until) throw DeviceError(uri + ": " + kControlledByOthers);
+    arv_gv_device_take_control(ARV_GV_DEVICE(arv_camera_get_device(camera)), nullptr);
     std::this_thread::sleep_for(kPause);
   }
+}
+
+GObjectPtr<ArvCamera> Connect(const std::string& name, const std::string& uri, bool ask_around) {
+  const std::string id = IsAddress(name) ? name : FindId(name, uri);
+  GErrorSlot error;
+  GObjectPtr<ArvCamera> camera(arv_camera_new(id.c_str(), error.out()));
+  if (camera != nullptr) return camera;
+  if (!IsAddress(name)) {
+    throw DeviceError(uri + ": the camera answers but cannot be opened (" + error.text() +
+                      "); switch it off and on");
+  }
+  // Not worth a second of asking around where a lost camera is tried again and again.
+  if (ask_around) ThrowAbsent(uri, DiscoverAravisCameras());
+  throw DeviceError(uri + ": no camera answers at " + name);
 }
 
 }  // namespace
@@ -103,20 +111,13 @@ bool IsControlled(ArvCamera* camera) {
 GObjectPtr<ArvCamera> OpenAravisCamera(const std::string& name, const std::string& uri,
                                        std::chrono::milliseconds patience) {
   const auto until = steady_clock::now() + patience;
-  const std::string id = IsAddress(name) ? name : FindId(name, uri);
-  GErrorSlot error;
-  GObjectPtr<ArvCamera> camera(arv_camera_new(id.c_str(), error.out()));
-  if (camera == nullptr && IsAddress(name)) {
-    // Not worth a second of asking around where a lost camera is tried again and again.
-    if (patience.count() > 0) ThrowAbsent(uri, DiscoverAravisCameras());
-    throw DeviceError(uri + ": no camera answers at " + name);
-  }
-  if (camera == nullptr) {
-    throw DeviceError(uri + ": the camera answers but cannot be opened (" + error.text() +
-                      "); switch it off and on");
-  }
+  GObjectPtr<ArvCamera> camera = Connect(name, uri, patience.count() > 0);
   TakeControl(camera.get(), uri, until);
   return camera;
+}
+
+GObjectPtr<ArvCamera> LookAtAravisCamera(const std::string& name, const std::string& uri) {
+  return Connect(name, uri, false);
 }
 
 std::string AddressOf(ArvCamera* camera) {

@@ -23,6 +23,15 @@ bool IsControlled(ArvCamera* camera);
 GObjectPtr<ArvCamera> OpenAravisCamera(const std::string& name, const std::string& uri,
                                        std::chrono::milliseconds patience);
 
+/// Opens a camera to ask it something, also where another program controls it. Throws `DeviceError`
+/// where it does not answer.
+GObjectPtr<ArvCamera> LookAtAravisCamera(const std::string& name, const std::string& uri);
+
+/// What is said of a camera that another program controls.
+constexpr const char* kControlledByOthers =
+    "the camera is controlled by another program; end that program (a camera frees itself 3 s "
+    "after its program died)";
+
 /// Gives the address by which an opened GigE Vision camera is found fastest; empty for others.
 std::string AddressOf(ArvCamera* camera);
 

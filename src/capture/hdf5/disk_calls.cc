@@ -95,6 +95,14 @@ bool WriteImageAt(const DiskCalls& disk, int fd, const ImageView& image, std::in
   return done;
 }
 
+void SyncFolderOf(const std::filesystem::path& file) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) return;
+  fsync(fd);
+  close(fd);
+}
+
 void GiveBackRoom(int fd, std::int64_t begin, std::int64_t end) {
   constexpr std::int64_t kPageBytes = 4096;  // room is kept in pages
   const std::int64_t first = (begin + kPageBytes - 1) / kPageBytes * kPageBytes;

@@ -4,6 +4,7 @@
 #include <sys/uio.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 
 #include "stereomotion/core/image.h"
@@ -28,6 +29,9 @@ bool WriteAt(const DiskCalls& disk, int fd, const void* data, std::int64_t bytes
 
 /// Writes the pixels of an image, row after row without gaps, at `offset`. False: errno tells why.
 bool WriteImageAt(const DiskCalls& disk, int fd, const ImageView& image, std::int64_t offset);
+
+/// Brings the names in a file's folder to the disk, as far as the file system can.
+void SyncFolderOf(const std::filesystem::path& file);
 
 /// Gives back the room of a file's bytes, where the file system can; they read as zeros then.
 void GiveBackRoom(int fd, std::int64_t begin, std::int64_t end);

@@ -47,6 +47,8 @@ H5Handle H5FileAccess() {
 H5Handle CreateH5File(const std::string& file, const H5Handle& access) {
   const H5Handle creation(H5Pcreate(H5P_FILE_CREATE));
   H5Pset_link_creation_order(creation.id(), H5P_CRT_ORDER_TRACKED | H5P_CRT_ORDER_INDEXED);
+  // From this format on HDF5 keeps check sums of most of its own structures.
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_V18, H5F_LIBVER_LATEST);
   return H5Handle(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, creation.id(), access.id()));
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <limits>
 
+#include "seal.h"
 #include "stereomotion/core/user_error.h"
 
 namespace stereomotion {
@@ -63,6 +64,12 @@ std::int64_t PlainOffset(const H5Handle& dataset, const H5Handle& type, PixelTyp
 H5Reader::H5Reader(fs::path file) : file_(std::move(file)) {
   std::error_code none;
   if (!fs::exists(file_, none)) throw UserError(file_.string() + ": no such file");
+  if (IsSealBroken(file_)) {
+    throw UserError(
+        file_.string() + ": found damaged contents (the check sum at its end does not " +
+        "fit), expected a recording; `stereomotion record --repair` makes it anew from " +
+        "its segments");
+  }
   h5_ = H5Handle(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5FileAccess().id()));
   if (!h5_) {
     throw UserError(file_.string() + ": cannot be read as an HDF5 file (" + H5ErrorText() +

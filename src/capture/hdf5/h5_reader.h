@@ -38,7 +38,7 @@ class H5Reader {
   /// Lists the groups that hold `images`: in the order of their creation, else by name.
   [[nodiscard]] std::vector<std::string> Cameras() const;
   [[nodiscard]] bool Has(const std::string& dataset) const;
-  [[nodiscard]] H5Images Images(const std::string& dataset) const;
+  [[nodiscard]] H5Images Images(const std::string& name) const;
   /// Reads whole numbers; there must be `count`.
   [[nodiscard]] std::vector<std::int64_t> Integers(const std::string& dataset,
                                                    std::int64_t count) const;
@@ -46,13 +46,13 @@ class H5Reader {
   [[nodiscard]] std::vector<double> Numbers(const std::string& dataset, std::int64_t count) const;
   /// Lists what a virtual dataset of images is made of; empty: it is none, or not of whole frames
   /// in order.
-  [[nodiscard]] std::vector<H5Run> Runs(const std::string& dataset) const;
+  [[nodiscard]] std::vector<H5Run> Runs(const std::string& name) const;
   [[nodiscard]] H5Handle OpenDataset(const std::string& dataset) const;
   [[noreturn]] void Fail(const std::string& dataset, const std::string& found,
                          const std::string& expected) const;
 
  private:
-  void ReadColumn(const std::string& dataset, std::int64_t count, bool whole, hid_t type,
+  void ReadColumn(const std::string& name, std::int64_t count, bool whole, hid_t native,
                   void* values) const;
 
   std::filesystem::path file_;

@@ -15,8 +15,6 @@
 namespace stereomotion {
 namespace {
 
-namespace fs = std::filesystem;
-
 // Before the rate is known.
 constexpr std::int64_t kFirstCapacity = 32;
 constexpr std::int64_t kSmallestCapacity = 8;
@@ -29,11 +27,11 @@ constexpr std::int64_t kLargestSegmentBytes = std::int64_t{4} << 30;
 
 class Hdf5Store : public FrameStore {
  public:
-  Hdf5Store(const RecorderOptions& options, const DiskCalls& disk)
-      : options_(options),
-        disk_(disk),
-        lock_(options.output, RecordingLock::Use::kRecord),
-        supply_(SegmentFolder(options.output), disk_) {}
+  Hdf5Store(RecorderOptions options, DiskCalls disk)
+      : options_(std::move(options)),
+        disk_(std::move(disk)),
+        lock_(options_.output, RecordingLock::Use::kRecord),
+        supply_(SegmentFolder(options_.output), disk_) {}
 
   int writers() const override { return 2; }
   RingPlace Reserve(const RingItem& item) override;
@@ -175,15 +173,19 @@ void Hdf5Store::Flush() {
 void Hdf5Store::Close(bool failed) {
   supply_.Discard();
   current_ = nullptr;
-  try {
-    for (auto& segment : open_) segment->Close();
-  } catch (const OutputError&) {
-    if (!failed) throw;
+  std::exception_ptr error;
+  for (auto& segment : open_) {
+    try {
+      segment->Close();
+    } catch (const OutputError&) {
+      error = std::current_exception();  // the other segments are as good as ever
+    }
   }
   open_.clear();
   lock_.FreeReserve();
   JoinSegments(options_.output, /*trust_all=*/true);
   lock_.Remove();
+  if (error && !failed) std::rethrow_exception(error);
 }
 
 }  // namespace

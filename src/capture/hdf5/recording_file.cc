@@ -3,6 +3,7 @@
 #include "h5_reader.h"
 #include "join_segments.h"
 #include "recording_lock.h"
+#include "seal.h"
 #include "stereomotion/capture/recorder.h"
 #include "stereomotion/core/user_error.h"
 
@@ -33,6 +34,29 @@ std::vector<std::string> CamerasOfSegments(const fs::path& recording) {
   return most;
 }
 
+RepairReport ReportOfWhole(const fs::path& recording) {
+  RepairReport report;
+  report.notes.push_back(recording.string() + ": is finished; there is nothing to repair");
+  const H5Lock lock;
+  const H5Reader reader(recording);
+  const auto cameras = reader.Cameras();
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, cameras.size()); ++i) {
+    report.frames[i] = reader.Images("/" + cameras[i] + "/images").frames;
+  }
+  return report;
+}
+
+RepairReport ReportOf(const fs::path& recording, const JoinedSegments& joined) {
+  RepairReport report;
+  report.notes = joined.notes;
+  for (std::size_t i = 0; i < std::min<std::size_t>(2, joined.frames.size()); ++i) {
+    report.frames[i] = joined.frames[i];
+    report.notes.push_back(recording.string() + ": " + std::to_string(joined.frames[i]) +
+                           " frames of " + joined.names[i] + " are readable");
+  }
+  return report;
+}
+
 }  // namespace
 
 bool SplitRecordingArgument(const std::string& argument, fs::path& file, std::string& camera) {
@@ -56,27 +80,15 @@ RepairReport RepairRecording(const fs::path& recording) {
     throw UserError(SegmentFolder(recording).string() + ": no such folder; a recording that was " +
                     "not finished has its images there");
   }
-  RepairReport report;
   if (!IsMarkedUnfinished(recording)) {
-    report.notes.push_back(recording.string() + ": is finished; there is nothing to repair");
-    const H5Lock lock;
-    const H5Reader reader(recording);
-    const auto cameras = reader.Cameras();
-    for (std::size_t i = 0; i < std::min<std::size_t>(2, cameras.size()); ++i) {
-      report.frames[i] = reader.Images("/" + cameras[i] + "/images").frames;
-    }
-    return report;
+    const bool is_whole = fs::exists(recording, none) && !IsSealBroken(recording);
+    return is_whole ? ReportOfWhole(recording)
+                    : ReportOf(recording, JoinSegments(recording, /*trust_all=*/true));
   }
   RecordingLock lock(recording, RecordingLock::Use::kRepair);
   lock.FreeReserve();
-  const JoinedSegments joined = JoinSegments(recording, !lock.is_from_earlier_boot());
+  RepairReport report = ReportOf(recording, JoinSegments(recording, !lock.is_from_earlier_boot()));
   lock.Remove();
-  report.notes = joined.notes;
-  for (std::size_t i = 0; i < std::min<std::size_t>(2, joined.frames.size()); ++i) {
-    report.frames[i] = joined.frames[i];
-    report.notes.push_back(recording.string() + ": " + std::to_string(joined.frames[i]) +
-                           " frames of " + joined.names[i] + " are readable");
-  }
   if (lock.is_from_earlier_boot()) {
     report.notes.push_back(recording.string() + ": the computer was started anew since it was " +
                            "recorded: only what had surely reached the disk is kept");

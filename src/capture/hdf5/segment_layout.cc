@@ -85,6 +85,7 @@ std::vector<SegmentOffsets> CreateSegment(const fs::path& file,
   const H5Lock lock;
   Creator creator(file);
   std::vector<SegmentOffsets> offsets;
+  offsets.reserve(cameras.size());
   for (const SegmentCamera& camera : cameras) offsets.push_back(creator.Add(camera));
   creator.Close();
   return offsets;

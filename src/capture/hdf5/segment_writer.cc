@@ -42,6 +42,7 @@ void SegmentWriter::Open() {
   // Its metadata must be on the disk before its name is: whatever has the name can be opened.
   if (disk_.sync(fd_) != 0) Fail("cannot be written");
   if (std::rename(part.c_str(), file_.c_str()) != 0) Fail("cannot be named");
+  SyncFolderOf(file_);  // a name that a power cut takes away would take the frames with it
 }
 
 SegmentWriter::~SegmentWriter() {

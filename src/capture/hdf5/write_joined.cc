@@ -5,9 +5,11 @@
 #include <cstdio>
 #include <cstring>
 
+#include "disk_calls.h"
 #include "h5_handle.h"
 #include "joined_camera.h"
 #include "recording_lock.h"
+#include "seal.h"
 #include "stereomotion/core/output_error.h"
 
 namespace stereomotion {
@@ -111,7 +113,10 @@ void SyncAndRename(const fs::path& part, const fs::path& file) {
   const int error = errno;
   if (fd >= 0) close(fd);
   errno = error;
-  if (synced && std::rename(part.c_str(), file.c_str()) == 0) return;
+  if (synced && std::rename(part.c_str(), file.c_str()) == 0) {
+    SyncFolderOf(file);
+    return;
+  }
   throw OutputError(file.string() + ": cannot be written: " + std::strerror(errno));
 }
 
@@ -128,6 +133,7 @@ void WriteJoined(const fs::path& recording, const std::vector<JoinedCamera>& cam
       }
       writer.Close();
     }
+    Seal(part);
     SyncAndRename(part, recording);
   } catch (...) {
     unlink(part.c_str());

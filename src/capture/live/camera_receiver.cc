@@ -60,7 +60,7 @@ void CameraReceiver::Loop() {
         TakeFrame();
         break;
       case DeviceEvent::kLost:
-        BringBack();
+        BringBack("the connection was lost");
         break;
       case DeviceEvent::kIncomplete:
       case DeviceEvent::kNothing:
@@ -93,6 +93,7 @@ void CameraReceiver::SendTriggers() {
 
 void CameraReceiver::TakeFrame() {
   if (stop_.raised()) return;
+  awaits_return_ = false;
   LiveFrame frame{pool_.Take(), received_.frame_id, received_.device_ns, received_.host_ns,
                   received_.epoch};
   std::swap(frame.frame->image, received_.image);
@@ -106,7 +107,9 @@ void CameraReceiver::TakeFrame() {
 }
 
 void CameraReceiver::CheckFirstImage() {
-  if (frames_ > 0 || Clock::now() - start_ < Seconds(options_.first_image_s)) return;
+  const auto waited = Clock::now() - (awaits_return_ ? reopened_at_ : start_);
+  if ((frames_ > 0 && !awaits_return_) || waited < Seconds(options_.first_image_s)) return;
+  if (awaits_return_) return BringBack("it answered, but sent no image");
   end_("no_images", NoImagesText(device_->uri(), device_->counts(), options_.first_image_s));
 }
 
@@ -122,29 +125,33 @@ bool CameraReceiver::TryToReopen(std::string& why) {
   }
 }
 
-void CameraReceiver::BringBack() {
+void CameraReceiver::BringBack(std::string why) {
   inbox_.Put({LiveEvent::Kind::kDown, camera_, {}});
-  const auto lost_at = Clock::now();
+  const auto now = Clock::now();
+  if (!awaits_return_) lost_at_ = now;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     is_down_ = true;
-    down_since_ = lost_at;
+    down_since_ = now;
   }
-  std::string why = "the connection was lost";
-  bool is_back = false;
-  for (auto pause = kFirstRetry; !is_back; pause = std::min(2 * pause, kLastRetry)) {
-    if (stop_.raised()) break;
-    if (Clock::now() - lost_at >= Seconds(options_.reconnect_s)) {
-      end_("camera_lost", CameraLostText(device_->uri(), why, options_.reconnect_s));
-      break;
-    }
-    const auto until = std::min(Clock::now() + pause, lost_at + Seconds(options_.reconnect_s));
-    is_back = !stop_.WaitUntil(until) && TryToReopen(why);
+  awaits_return_ = KeepTrying(why);
+  reopened_at_ = next_trigger_ = Clock::now();
+  if (!awaits_return_ && !stop_.raised()) {
+    end_("camera_lost", CameraLostText(device_->uri(), why, options_.reconnect_s));
   }
   const std::lock_guard<std::mutex> lock(mutex_);
-  down_ += Clock::now() - lost_at;
+  down_ += reopened_at_ - now;
   is_down_ = false;
-  next_trigger_ = std::max(next_trigger_, Clock::now());
+}
+
+bool CameraReceiver::KeepTrying(std::string& why) {
+  const auto give_up_at = lost_at_ + Seconds(options_.reconnect_s);
+  for (auto pause = kFirstRetry; Clock::now() < give_up_at;
+       pause = std::min(2 * pause, kLastRetry)) {
+    if (stop_.WaitUntil(std::min(Clock::now() + pause, give_up_at))) return false;
+    if (TryToReopen(why)) return true;
+  }
+  return false;
 }
 
 void CameraReceiver::NoteDevice() {

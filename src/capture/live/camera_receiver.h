@@ -41,7 +41,8 @@ class CameraReceiver {
   DeviceEvent WaitForImage();
   void TakeFrame();
   void CheckFirstImage();
-  void BringBack();
+  void BringBack(std::string why);
+  bool KeepTrying(std::string& why);
   bool TryToReopen(std::string& why);
   void SendTriggers();
   void NoteDevice();
@@ -55,6 +56,8 @@ class CameraReceiver {
   FramePool pool_;
   DeviceFrame received_;
   Clock::time_point start_, next_trigger_, next_note_;
+  Clock::time_point lost_at_, reopened_at_;
+  bool awaits_return_ = false;  ///< reopened, but no image has come yet
 
   mutable std::mutex mutex_;  ///< of what follows
   DeviceInfo info_;

@@ -83,6 +83,8 @@ class ClockPair {
   [[nodiscard]] double uncertainty_ns() const;
 
  private:
+  static constexpr double kSteepestDrift = 500e-6;  ///< of two crystals, ns a ns
+
   static std::size_t Index(int camera) { return static_cast<std::size_t>(camera); }
   LockState Lock(const std::vector<std::int64_t>& left_ns,
                  const std::vector<std::int64_t>& right_ns);

@@ -14,12 +14,22 @@ constexpr std::int64_t kPatienceNs = 1'000'000'000;
 constexpr std::int64_t kHoldNs = 2'000'000'000;
 /// Slow cameras need longer for the three images that a lock takes.
 constexpr std::int64_t kHoldPeriods = 6;
-/// Of two possible partners one must be so much nearer.
-constexpr std::int64_t kByFar = 3;
-/// So many images of each camera without a pair: what was believed of the clocks is wrong.
-constexpr std::int64_t kStarving = 32;
 
 }  // namespace
+
+MatcherOptions MatcherOptionsOf(const LiveOptions& live, const DeviceInfo& info) {
+  constexpr double kNsPerMs = 1e6;
+  MatcherOptions options;
+  if (live.pair_tolerance_ms) {
+    options.tolerance_ns = std::llround(kNsPerMs * *live.pair_tolerance_ms);
+  }
+  // Grey images have two bytes a pixel at most.
+  const std::int64_t image_bytes = std::max<std::int64_t>(1, 2LL * info.width_px * info.height_px);
+  constexpr std::int64_t kFewest = 16, kMost = 2048;
+  const std::int64_t room = live.queue_bytes / 2 / image_bytes;
+  options.most_held = static_cast<std::size_t>(std::clamp(room, kFewest, kMost));
+  return options;
+}
 
 FrameMatcher::FrameMatcher(const MatcherOptions& options, Sink sink)
     : options_(options), sink_(std::move(sink)), clocks_(false) {}
@@ -120,56 +130,6 @@ bool FrameMatcher::StepLone(int camera, std::int64_t now_ns) {
   return true;
 }
 
-std::int64_t FrameMatcher::DifferenceNs(std::size_t left, std::size_t right) const {
-  const std::int64_t right_ns = waiting_[1][right].device_ns;
-  return right_ns + clocks_.OffsetAt(right_ns) - waiting_[0][left].device_ns;
-}
-
-/// The time difference of a camera's second image to the other camera's first one: from the image
-/// itself where it has come, else at the least.
-std::optional<std::int64_t> FrameMatcher::RivalNs(int camera) const {
-  if (waiting_[Index(camera)].size() < 2) return std::nullopt;
-  return std::llabs(camera == 0 ? DifferenceNs(1, 0) : DifferenceNs(0, 1));
-}
-
-bool FrameMatcher::StepHeads(std::int64_t now_ns) {
-  const std::int64_t difference_ns = DifferenceNs(0, 0), tolerance_ns = ToleranceNs();
-  const std::int64_t apart_ns = std::llabs(difference_ns);
-  if (apart_ns >= tolerance_ns) {
-    if (2 * apart_ns <= clocks_.period_ns()) counts_.phase_ns = static_cast<double>(difference_ns);
-    const int earlier = difference_ns > 0 ? 0 : 1;
-    GiveAlone(earlier);
-    if (apart_ns <= clocks_.period_ns()) ++alone_in_a_row_[Index(earlier)];
-    CheckStarving();
-    return true;
-  }
-  for (const int camera : {0, 1}) {
-    const auto rival_ns = RivalNs(camera);
-    if (!rival_ns) {
-      const bool rival_may_come = clocks_.steps(camera).shortest_ns() <= kByFar * apart_ns;
-      if (rival_may_come && !HasWaited(1 - camera, now_ns)) return false;
-    } else if (*rival_ns < tolerance_ns && *rival_ns < kByFar * apart_ns) {
-      // Another image of this camera is as near to the other's, or nearer: the head goes alone; of
-      // two equally near ones nothing tells the right one, so neither is taken.
-      const bool other_is_better = kByFar * *rival_ns <= apart_ns;
-      GiveAlone(camera);
-      if (!other_is_better) {
-        GiveAlone(1 - camera);
-        ++counts_.ambiguous;
-      }
-      return true;
-    }
-  }
-  const bool breaks_rule =
-      numbers_.Breaks(waiting_[0].front().frame_id - waiting_[1].front().frame_id);
-  if (breaks_rule && clocks_.relation() != ClockRelation::kShared) {
-    clocks_.GiveUp();  // arrivals must tell anew
-  } else {
-    GivePair();
-  }
-  return true;
-}
-
 void FrameMatcher::GivePair() {
   const LiveFrame left = waiting_[0].pop_front(), right = waiting_[1].pop_front();
   const std::int64_t right_ns = right.device_ns + clocks_.OffsetAt(right.device_ns);
@@ -190,16 +150,6 @@ void FrameMatcher::GiveAlone(int camera) {
     sink_(frame.frame, nullptr);
   } else if (dating_.DateRight(frame)) {
     sink_(nullptr, frame.frame);
-  }
-}
-
-void FrameMatcher::CheckStarving() {
-  if (std::min(alone_in_a_row_[0], alone_in_a_row_[1]) < kStarving) return;
-  alone_in_a_row_ = {};
-  if (clocks_.relation() == ClockRelation::kShared) {
-    clocks_.TakeNoPairs();
-  } else {
-    clocks_.GiveUp();
   }
 }
 

@@ -12,6 +12,7 @@
 #include "frame_dating.h"
 #include "pair_statistics.h"
 #include "ring.h"
+#include "stereomotion/capture/live_pairs.h"
 
 namespace stereomotion {
 
@@ -19,6 +20,9 @@ struct MatcherOptions {
   std::optional<std::int64_t> tolerance_ns;  ///< nothing: a quarter of the period
   std::size_t most_held = 512;  ///< images of a camera that wait for the clocks to be known
 };
+
+/// Chooses them for cameras of that image size.
+MatcherOptions MatcherOptionsOf(const LiveOptions& live, const DeviceInfo& info);
 
 /// Tells how the images were put together so far.
 struct MatcherSummary {
@@ -76,6 +80,8 @@ class FrameMatcher {
   [[nodiscard]] std::int64_t DifferenceNs(std::size_t left, std::size_t right) const;
   [[nodiscard]] std::optional<std::int64_t> RivalNs(int camera) const;
   [[nodiscard]] std::int64_t ToleranceNs() const;
+  void GiveEarlier(std::int64_t difference_ns);
+  void GiveIfNumbersAgree();
   void GivePair();
   void GiveAlone(int camera);
   void CheckStarving();

@@ -30,20 +30,6 @@ std::int64_t HostNow() {
       .count();
 }
 
-MatcherOptions OptionsOfMatcher(const LiveOptions& options, const DeviceInfo& info) {
-  constexpr double kNsPerMs = 1e6;
-  MatcherOptions matcher;
-  if (options.pair_tolerance_ms) {
-    matcher.tolerance_ns = static_cast<std::int64_t>(kNsPerMs * *options.pair_tolerance_ms);
-  }
-  // A colour or 16 bit camera delivers two bytes a pixel at most.
-  const std::int64_t image_bytes = std::max<std::int64_t>(1, 2LL * info.width_px * info.height_px);
-  constexpr std::int64_t kFewest = 16, kMost = 2048;
-  matcher.most_held =
-      static_cast<std::size_t>(std::clamp(options.queue_bytes / 2 / image_bytes, kFewest, kMost));
-  return matcher;
-}
-
 }  // namespace
 
 class LivePairs::Impl {
@@ -52,7 +38,7 @@ class LivePairs::Impl {
        const LiveOptions& options, FrameTap* tap)
       : options_(options),
         tap_(tap),
-        matcher_(OptionsOfMatcher(options, left->info()),
+        matcher_(MatcherOptionsOf(options, left->info()),
                  [this](const auto& first, const auto& second) { Give(first, second); }),
         queue_({options.queue_s, options.queue_bytes}),
         left_(0, std::move(left), options, inbox_, stop_, EndWith()),
@@ -77,15 +63,8 @@ class LivePairs::Impl {
   }
 
   void Stop(const std::string& why, const std::string& problem) {
-    {
-      const std::lock_guard<std::mutex> lock(end_mutex_);
-      if (end_.empty()) {
-        end_ = why;
-        problem_ = problem;
-      }
-      if (!has_threads_) queue_.End();  // nobody else would
-    }
-    stop_.Raise();
+    stop_.Raise(why, problem);
+    if (!has_threads_) queue_.End();  // nobody else would
   }
 
   bool Read(std::int64_t position, FramePair& pair) { return queue_.Read(position, pair); }
@@ -100,9 +79,8 @@ class LivePairs::Impl {
     report.dropped_pairs = queue_.dropped();
     report.most_queued = queue_.most_queued();
     ReportPairing(report);
-    const std::lock_guard<std::mutex> lock(end_mutex_);
-    report.end = end_;
-    report.problem = problem_;
+    report.end = stop_.why();
+    report.problem = stop_.problem();
     return report;
   }
 
@@ -112,7 +90,7 @@ class LivePairs::Impl {
     constexpr double kNsPerUs = 1e3;
     // Where the images carry their exposure, the clocks are fitted with it.
     const auto half_ns = static_cast<std::int64_t>(kNsPerUs * exposure_us / 2);
-    return matcher_.HostTimeOf(timestamp_ns) - (carries_exposure_ ? 0 : half_ns);
+    return matcher_.dating().HostTimeOf(timestamp_ns) - (carries_exposure_ ? 0 : half_ns);
   }
 
  private:
@@ -179,23 +157,8 @@ class LivePairs::Impl {
 
   void ReportPairing(LiveReport& report) const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const MatcherSummary summary = matcher_.summary();
-    const ClockPair& clocks = matcher_.clocks();
-    constexpr double kMsPerNs = 1e-6;
-    for (std::size_t i = 0; i < report.cameras.size(); ++i) {
-      report.cameras[i].unpaired = summary.unpaired[i];
-    }
-    report.pairs = given_pairs_;
-    report.period_s = static_cast<double>(clocks.period_ns()) * kSecondsPerNs;
-    report.tolerance_ms = static_cast<double>(summary.tolerance_ns) * kMsPerNs;
-    report.clock = clocks.relation();
-    report.clock_offset_s = -static_cast<double>(clocks.last_offset_ns()) * kSecondsPerNs;
-    report.clock_drift_ppm = clocks.drift_ppm();
-    report.skew_ms = summary.skew_ns * kMsPerNs;
-    report.jitter_ms = summary.jitter_ns * kMsPerNs;
-    report.free_running = clocks.free_running();
-    const auto warnings = PairingWarnings(matcher_, {report.cameras[0].uri, report.cameras[1].uri});
-    report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
+    DescribePairing(matcher_, report);
+    report.pairs = given_pairs_;  // a pair may have come after the last one that was asked for
   }
 
   LiveOptions options_;
@@ -206,9 +169,6 @@ class LivePairs::Impl {
   bool has_host_clock_ = false;
   bool carries_exposure_ = false;
   std::int64_t given_pairs_ = 0;
-
-  mutable std::mutex end_mutex_;
-  std::string end_, problem_;
 
   StopSignal stop_;
   LiveInbox inbox_;

@@ -1,9 +1,13 @@
 #include "live_words.h"
 
+#include <array>
 #include <cmath>
 #include <iomanip>
 #include <locale>
 #include <sstream>
+#include <vector>
+
+#include "stereomotion/core/units.h"
 
 namespace stereomotion {
 namespace {
@@ -61,7 +65,9 @@ std::string Ambiguous(const FrameMatcher& matcher) {
 std::string Skew(const MatcherSummary& summary, double period_ns,
                  const std::array<std::string, 2>& uris) {
   return uris[1] + "'s images are taken " + TimeApart(summary.skew_ns, period_ns) + " " + uris[0] +
-         "'s: set the same trigger delay and exposure, or give time_offset_s in rig.yaml";
+         "'s: set the same trigger delay and exposure in both (what is left is estimated from the "
+         "motion: "
+         "time_offset_s in motion.json)";
 }
 
 void AddCounts(const MatcherSummary& summary, const std::array<std::string, 2>& uris,
@@ -83,33 +89,6 @@ void AddCounts(const MatcherSummary& summary, const std::array<std::string, 2>& 
                        " times two images were equally near in time to one of the other camera; "
                        "none was taken");
   }
-}
-
-}  // namespace
-
-std::string NoImagesText(const std::string& uri, const DeviceCounts& counts, double waited_s) {
-  std::string text = uri + ": no whole image within " + Seconds(waited_s);
-  if (counts.wrong_format > 0) {
-    return text + ", but " + std::to_string(counts.wrong_format) +
-           " of another size or pixel format than was agreed on: does another program set the "
-           "camera? Switch it off and on again";
-  }
-  if (counts.incomplete > 0 || counts.underruns > 0) {
-    return text + ", but " + std::to_string(counts.incomplete + counts.underruns) +
-           " with packets missing: let card and switch carry jumbo frames (MTU 9000) or give "
-           "--packet-size 1400, lower the rate; docs/cameras.md";
-  }
-  return text +
-         ": does it wait for a trigger (--trigger free_run shows)? Does a firewall keep its "
-         "packets "
-         "away, or is a packet size set that the network does not carry (--packet-size 1400 "
-         "shows)? "
-         "docs/cameras.md";
-}
-
-std::string CameraLostText(const std::string& uri, const std::string& why, double waited_s) {
-  return uri + ": lost, and not back within " + Seconds(waited_s) + " (--reconnect-s): " + why +
-         "; look at cable, power and switch";
 }
 
 std::vector<std::string> PairingWarnings(const FrameMatcher& matcher,
@@ -146,6 +125,52 @@ std::vector<std::string> PairingWarnings(const FrameMatcher& matcher,
   }
   AddCounts(summary, uris, warnings);
   return warnings;
+}
+
+}  // namespace
+
+std::string NoImagesText(const std::string& uri, const DeviceCounts& counts, double waited_s) {
+  std::string text = uri + ": no whole image within " + Seconds(waited_s);
+  if (counts.wrong_format > 0) {
+    return text + ", but " + std::to_string(counts.wrong_format) +
+           " of another size or pixel format than was agreed on: does another program set the "
+           "camera? Switch it off and on again";
+  }
+  if (counts.incomplete > 0 || counts.underruns > 0) {
+    return text + ", but " + std::to_string(counts.incomplete + counts.underruns) +
+           " with packets missing: let card and switch carry jumbo frames (MTU 9000) or give "
+           "--packet-size 1400, lower the rate; docs/cameras.md";
+  }
+  return text +
+         ": does it wait for a trigger (--trigger free_run shows)? Does a firewall keep its "
+         "packets "
+         "away, or is a packet size set that the network does not carry (--packet-size 1400 "
+         "shows)? "
+         "docs/cameras.md";
+}
+
+std::string CameraLostText(const std::string& uri, const std::string& why, double waited_s) {
+  return uri + ": lost, and not back within " + Seconds(waited_s) + " (--reconnect-s): " + why +
+         "; look at cable, power and switch";
+}
+
+void DescribePairing(const FrameMatcher& matcher, LiveReport& report) {
+  const MatcherSummary summary = matcher.summary();
+  const ClockPair& clocks = matcher.clocks();
+  for (std::size_t i = 0; i < report.cameras.size(); ++i) {
+    report.cameras[i].unpaired = summary.unpaired[i];
+  }
+  report.pairs = summary.pairs;
+  report.period_s = static_cast<double>(clocks.period_ns()) * kSecondsPerNs;
+  report.tolerance_ms = static_cast<double>(summary.tolerance_ns) * kMsPerNs;
+  report.clock = clocks.relation();
+  report.clock_offset_s = -static_cast<double>(clocks.last_offset_ns()) * kSecondsPerNs;
+  report.clock_drift_ppm = clocks.drift_ppm();
+  report.skew_ms = summary.skew_ns * kMsPerNs;
+  report.jitter_ms = summary.jitter_ns * kMsPerNs;
+  report.free_running = clocks.free_running();
+  const auto warnings = PairingWarnings(matcher, {report.cameras[0].uri, report.cameras[1].uri});
+  report.warnings.insert(report.warnings.end(), warnings.begin(), warnings.end());
 }
 
 }  // namespace stereomotion

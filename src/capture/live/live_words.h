@@ -1,8 +1,6 @@
 #pragma once
 
-#include <array>
 #include <string>
-#include <vector>
 
 #include "frame_matcher.h"
 #include "stereomotion/capture/live_report.h"
@@ -15,8 +13,8 @@ std::string NoImagesText(const std::string& uri, const DeviceCounts& counts, dou
 /// Says that a lost camera did not come back.
 std::string CameraLostText(const std::string& uri, const std::string& why, double waited_s);
 
-/// Says what a person should know of how the images were put together.
-std::vector<std::string> PairingWarnings(const FrameMatcher& matcher,
-                                         const std::array<std::string, 2>& uris);
+/// Fills in how the images were put together, and what a person should know of it; the cameras'
+/// names stand in the report.
+void DescribePairing(const FrameMatcher& matcher, LiveReport& report);
 
 }  // namespace stereomotion

@@ -40,16 +40,22 @@ std::optional<PairBlocks::Block> PairBlocks::Add(double difference_ns) {
   return block;
 }
 
-bool NumberRule::Breaks(std::int64_t difference) {
+NumberRule::Verdict NumberRule::Judge(std::int64_t difference) {
   constexpr std::int64_t kRule = 16;  // so many pairs in a row make it one
+  constexpr std::int64_t kDoubtsToChange = 4;
   if (difference == difference_) {
     ++agreed_;
-    return false;
+    doubts_ = 0;
+    return Verdict::kKeeps;
   }
-  const bool was_rule = agreed_ >= kRule;
+  doubts_ = difference == doubted_ ? doubts_ + 1 : 1;
+  doubted_ = difference;
+  if (agreed_ >= kRule && doubts_ < kDoubtsToChange) {
+    return doubts_ == 1 ? Verdict::kFirstDoubt : Verdict::kDoubt;
+  }
   difference_ = difference;
-  agreed_ = 0;
-  return was_rule;
+  Forget();
+  return Verdict::kKeeps;
 }
 
 }  // namespace stereomotion

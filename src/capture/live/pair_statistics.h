@@ -38,18 +38,26 @@ class PairBlocks {
   std::vector<double> values_ns_;
 };
 
-/// Watches the numbers that cameras give their images. Cameras in step count alike; a pair that
-/// breaks a long rule shows that an image is missing in one camera's numbers, or that a clock was
-/// set by about a whole number of periods.
+/// Watches the numbers that cameras give their images. Cameras in step count alike. Pairs that
+/// break a long rule show that an image is missing in one camera's numbers, that a clock was set by
+/// about a whole number of periods, or, where images carry the time of their arrival, that one came
+/// late.
 class NumberRule {
  public:
-  /// Adds left − right of a pair's numbers; true: it breaks the rule, which is forgotten.
-  bool Breaks(std::int64_t difference);
-  void Forget() { agreed_ = 0; }
+  enum class Verdict {
+    kKeeps,
+    kFirstDoubt,  ///< breaks the rule: not to be taken
+    kDoubt,       ///< does so again, alike; after a few the rule is taken for outdated
+  };
+  /// Adds left − right of a possible pair's numbers.
+  Verdict Judge(std::int64_t difference);
+  void Forget() { agreed_ = doubts_ = 0; }
 
  private:
   std::int64_t difference_ = 0;
   std::int64_t agreed_ = 0;  ///< pairs in a row
+  std::int64_t doubted_ = 0;
+  std::int64_t doubts_ = 0;  ///< in a row, with that difference
 };
 
 }  // namespace stereomotion

@@ -35,7 +35,7 @@ class LinuxKernel : public Kernel {
     return Result(::open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC));
   }
   void Close(int descriptor) override { ::close(descriptor); }
-  int Control(int descriptor, unsigned long request, void* argument) override {
+  int Control(int descriptor, std::uint64_t request, void* argument) override {
     return Result(::ioctl(descriptor, request, argument));
   }
   void* Map(int descriptor, std::size_t bytes, std::int64_t offset, int& error) override {
@@ -59,6 +59,7 @@ class LinuxKernel : public Kernel {
     }
     std::sort(found.begin(), found.end());
     std::vector<std::string> paths;
+    paths.reserve(found.size());
     for (const auto& node : found) paths.push_back(node.second);
     return paths;
   }

@@ -17,7 +17,7 @@ class Kernel {
   virtual int Open(const std::string& path) = 0;
   virtual void Close(int descriptor) = 0;
   /// ioctl: 0 or more, or −errno.
-  virtual int Control(int descriptor, unsigned long request, void* argument) = 0;
+  virtual int Control(int descriptor, std::uint64_t request, void* argument) = 0;
   /// Maps a buffer of the device for reading; null and `error` (errno) where that fails.
   virtual void* Map(int descriptor, std::size_t bytes, std::int64_t offset, int& error) = 0;
   virtual void Unmap(void* memory, std::size_t bytes) = 0;

@@ -1,7 +1,6 @@
 #include "list_cameras.h"
 
 #include <cerrno>
-#include <utility>
 
 #include "format.h"
 #include "fourcc.h"
@@ -62,7 +61,7 @@ DeviceInfo DescribeAt(const std::shared_ptr<Kernel>& kernel, const std::string& 
 }  // namespace
 }  // namespace v4l2
 
-std::vector<DeviceInfo> ListV4l2Cameras(std::shared_ptr<v4l2::Kernel> kernel) {
+std::vector<DeviceInfo> ListV4l2Cameras(const std::shared_ptr<v4l2::Kernel>& kernel) {
   std::vector<DeviceInfo> cameras;
   for (const std::string& path : kernel->VideoNodes()) {
     if (!v4l2::IsNoCamera(*kernel, path)) cameras.push_back(v4l2::DescribeAt(kernel, path));

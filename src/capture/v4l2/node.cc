@@ -90,8 +90,8 @@ int QueryCapability(Kernel& kernel, int descriptor, Capability& capability) {
   return 0;
 }
 
-Node::Node(std::shared_ptr<Kernel> kernel, const std::string& path)
-    : kernel_(std::move(kernel)), path_(path) {
+Node::Node(std::shared_ptr<Kernel> kernel, std::string path)
+    : kernel_(std::move(kernel)), path_(std::move(path)) {
   do {
     descriptor_ = kernel_->Open(path_);
   } while (descriptor_ == -EINTR);
@@ -132,7 +132,7 @@ std::uint32_t Node::buffer_type() const {
   return capability_.multiplanar ? V4L2_BUF_TYPE_VIDEO_CAPTURE_MPLANE : V4L2_BUF_TYPE_VIDEO_CAPTURE;
 }
 
-int Node::Try(unsigned long request, void* argument) const {
+int Node::Try(std::uint64_t request, void* argument) const {
   int result = 0;
   do {
     result = kernel_->Control(descriptor_, request, argument);
@@ -140,7 +140,7 @@ int Node::Try(unsigned long request, void* argument) const {
   return result < 0 ? -result : 0;
 }
 
-void Node::Call(unsigned long request, void* argument, const std::string& what,
+void Node::Call(std::uint64_t request, void* argument, const std::string& what,
                 const char* call) const {
   const int error = Try(request, argument);
   if (error == 0) return;

@@ -22,7 +22,7 @@ class Node {
  public:
   /// Opens a device that can capture and stream. Throws `DeviceError`: absent (the message lists
   /// those that exist), not permitted, no V4L2 device, no camera.
-  Node(std::shared_ptr<Kernel> kernel, const std::string& path);
+  Node(std::shared_ptr<Kernel> kernel, std::string path);
   ~Node();
   Node(const Node&) = delete;
   Node& operator=(const Node&) = delete;
@@ -34,9 +34,9 @@ class Node {
   [[nodiscard]] std::uint32_t buffer_type() const;
 
   /// Makes an ioctl: 0, or errno.
-  int Try(unsigned long request, void* argument) const;
+  int Try(std::uint64_t request, void* argument) const;
   /// Makes an ioctl that must succeed; else throws `DeviceError`: cannot `what` (`call`: why).
-  void Call(unsigned long request, void* argument, const std::string& what, const char* call) const;
+  void Call(std::uint64_t request, void* argument, const std::string& what, const char* call) const;
   /// Maps a buffer. Throws `DeviceError`.
   void* Map(std::size_t bytes, std::int64_t offset) const;
   /// Waits for an image: poll's events, 0 after the time, or −errno.

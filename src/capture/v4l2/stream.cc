@@ -79,7 +79,8 @@ DeviceEvent Stream::Next(std::chrono::milliseconds at_most, DeviceFrame& frame,
     dropped_ = 0;
     counts.lost = numbers_.lost();
     ++counts.frames;
-    if (!numbers_.counts()) {
+    if (!numbers_.counts() && !told_) {
+      told_ = true;
       problem = "its driver does not number the images one after the other: lost ones are not seen";
     }
   } else {

@@ -46,6 +46,7 @@ class Stream {
   std::int64_t last_ns_;
   std::int64_t dropped_ = 0;  // since the last image that was used
   int broken_ = 0;            // errno of a buffer that could not be handed back
+  bool told_ = false;         // that the driver does not count
   bool on_ = false;
 };
 

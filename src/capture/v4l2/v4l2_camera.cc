@@ -40,8 +40,8 @@ void RefuseTriggers(const std::string& uri, TriggerMode mode) {
 
 class V4l2Camera : public CameraDevice {
  public:
-  V4l2Camera(const std::string& uri, const CameraSettings& settings, std::shared_ptr<Kernel> kernel)
-      : uri_(uri), path_(PathOf(uri)), settings_(settings), kernel_(std::move(kernel)) {
+  V4l2Camera(const std::string& uri, CameraSettings settings, std::shared_ptr<Kernel> kernel)
+      : uri_(uri), path_(PathOf(uri)), settings_(std::move(settings)), kernel_(std::move(kernel)) {
     RefuseTriggers(uri_, settings_.trigger);
     Open();
     WarnOfWhatDoesNotApply();

@@ -17,6 +17,6 @@ std::unique_ptr<CameraDevice> OpenV4l2Camera(
 
 /// Lists the devices that capture images, with those that cannot be opened.
 std::vector<DeviceInfo> ListV4l2Cameras(
-    std::shared_ptr<v4l2::Kernel> kernel = v4l2::RunningKernel());
+    const std::shared_ptr<v4l2::Kernel>& kernel = v4l2::RunningKernel());
 
 }  // namespace stereomotion

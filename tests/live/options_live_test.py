@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""What `track` does with live cameras besides tracking: streams, learns bodies, checks sizes, drops.
+
+Usage: options_live_test.py PATH/TO/stereomotion PATH/TO/stereomotion_gv_server [unittest options]
+"""
+
+import json
+import pathlib
+import resource
+import signal
+import subprocess
+import sys
+
+from live_case import LEFT, RIGHT, RIG, LiveCase, main, rows, run
+
+CLIENT = pathlib.Path(__file__).resolve().parents[2] / "examples" / "stream_client.py"
+PORT = 42312  # in a network of our own
+
+
+class OptionsLive(LiveCase):
+    def test_stream_says_what_poses_csv_says(self):
+        client = subprocess.Popen(
+            [sys.executable, CLIENT, f"tcp://127.0.0.1:{PORT}", "--json", "--wait-s", "30"],
+            text=True, stdout=subprocess.PIPE)
+        with self.server():
+            result = self.track("--duration", 5, "--stream", f"tcp://127.0.0.1:{PORT}")
+        out, _ = client.communicate(timeout=30)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(client.returncode, 0)
+        messages = [json.loads(line) for line in out.splitlines()]
+        self.assertTrue(messages[0]["live"])
+        self.assertEqual(messages[-1]["end"], "duration")
+        table = {int(row["frame"]): row for row in rows(self.dir / "run" / "poses.csv")}
+        poses = [message for message in messages if "frame" in message]
+        self.assertGreater(len(poses), 20)
+        for pose in poses:
+            row = table[pose["frame"]]
+            self.assertEqual((pose["timestamp_ns"], pose["status"]),
+                             (int(row["timestamp_ns"]), row["status"]))
+            self.assertGreater(pose["latency_ms"], 0)
+            if pose["status"] == "ok":
+                # poses.csv is corrected for the motion within the exposure.
+                self.assertAlmostEqual(pose["t_mm"][0], float(row["tx_mm"]), delta=0.05)
+
+    def test_bodies_are_learned_first(self):
+        with self.server():
+            result = run("track", "--left", LEFT, "--right", RIGHT, "--rig",
+                         self.base / "rig.yaml", "--output", self.dir / "run", "--learn-s", 3,
+                         "--count", 20, "--no-motion", "--queue-s", 60, cwd=self.dir)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("move and turn them", result.stderr)
+        self.assertTrue((self.dir / "run" / "learn.h5").exists())
+        self.assertTrue(self.result()["bodies"][0]["learned"])
+        table = rows(self.dir / "run" / "poses.csv")
+        self.assertGreater(sum(row["status"] == "ok" for row in table), 15)
+        self.assertEqual(self.result()["live"]["pairs"], 20)
+
+    def test_rig_of_another_image_size(self):
+        text = (self.base / "rig.yaml").read_text().replace("[640, 512]", "[640, 480]")
+        (self.dir / "rig.yaml").write_text(text)
+        with self.server():
+            result = run("track", "--left", LEFT, "--right", RIGHT, "--body",
+                         self.base / "body.yaml", "--output", "run", cwd=self.dir)
+        self.assertEqual(result.returncode, 2, result.stderr)
+        for word in (LEFT, "640 x 512", "640 x 480", "rig.yaml", "cam0"):
+            self.assertIn(word, result.stderr)
+        self.assertFalse((self.dir / "run").exists())
+
+    def test_what_is_dropped_is_told(self):
+        """With room for a pair or two only, the while that learning the noise takes is lost."""
+        (self.dir / "rig.yaml").write_text(RIG)  # without noise
+        self.rate_hz = 100
+        with self.server():
+            result = run("track", "--left", LEFT, "--right", RIGHT, "--body",
+                         self.base / "body.yaml", "--output", "run", "--duration", 5, "--queue-s",
+                         0.01, "--threads", 1, "--detector", "wavelet", "--no-motion",
+                         cwd=self.dir)
+        self.assertIn(result.returncode, (0, 1), result.stderr)
+        statuses = self.statuses(self.check_poses(least=0))
+        record = self.result()
+        self.assertEqual(statuses.get("dropped", 0), record["live"]["dropped_pairs"])
+        self.assertEqual(statuses.get("dropped", 0), record["frames"]["lost"].get("dropped", 0))
+        self.assertEqual(sum(statuses.values()), record["frames"]["read"])
+        self.assert_counts_add_up()
+
+    def test_software_trigger_as_the_rig_says(self):
+        text = (self.base / "rig.yaml").read_text()
+        for name, uri in (("cam0", LEFT), ("cam1", RIGHT)):
+            block = f'{{camera: "{uri}", trigger: software, frame_rate_hz: 8, exposure_us: 900}}'
+            text = text.replace(f"- name: {name}\n", f"- name: {name}\n    source: {block}\n")
+        (self.dir / "rig.yaml").write_text(text)
+        with self.server():
+            result = run("track", "--left", "cam0", "--right", "cam1", "--body",
+                         self.base / "body.yaml", "--output", "run", "--count", 15, "--no-motion",
+                         "--exposure-us", 1100, cwd=self.dir)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        live = self.result()["live"]
+        self.assertEqual(live["pairs"], 15)
+        self.assertGreater(live["period_s"], 0.1)
+        self.assertIn("trigger: software", (self.dir / "run" / "rig.yaml").read_text())
+
+    def test_full_disk_ends_the_run_and_the_cameras(self):
+        def small_files():
+            signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+            resource.setrlimit(resource.RLIMIT_FSIZE, (60000, 60000))
+
+        with self.server():
+            result = run(*self.arguments("--duration", 60), cwd=self.dir, timeout=50,
+                         preexec_fn=small_files)
+            self.assertEqual(result.returncode, 3, result.stderr)
+            self.assertIn("cannot be written", result.stderr)
+            record = self.result()
+            self.assertEqual((record["state"], record["live"]["end"]),
+                             ("output_failed", "output_failed"))
+            # The cameras are free again.
+            again = self.track("--count", 3, output="again")
+        self.assertEqual(again.returncode, 0, again.stderr)
+
+    def test_camera_that_is_not_there(self):
+        with self.server():
+            result = run("track", "--left", LEFT, "--right", "aravis:127.0.0.9", "--rig",
+                         self.base / "rig.yaml", "--body", self.base / "body.yaml", "--output",
+                         "run", cwd=self.dir)
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("aravis:127.0.0.9", result.stderr)
+        self.assertFalse((self.dir / "run").exists())
+
+
+if __name__ == "__main__":
+    main()
