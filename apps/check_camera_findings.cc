@@ -24,8 +24,8 @@ constexpr double kBrightBackground = 0.3;
 /// Standard deviation of the blur: a sharp lens gives 0.5 to 0.8 px. The centre's σ grows as the
 /// root of it: by 1.4 at 1.2 px, by 2 at 2.5 px, where small balls run into one another.
 constexpr double kSoft_px = 1.2, kBlurred_px = 2.5;
-/// A smear of half a diameter costs a third more error along it, and the corrections for curved
-/// motion begin to count.
+/// docs/accuracy.md, "Smear": half a diameter costs a quarter more error, a whole one 60 %; beyond
+/// a half the faster detectors fail.
 constexpr double kSmearOfDiameter = 0.5;
 /// The detector is tested from 6 px on (0.024 px at 30 dB against 0.020 at 9 px) and takes nothing
 /// below 3 px or above 64 px.

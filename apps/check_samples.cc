@@ -127,12 +127,12 @@ std::int64_t RoomFor(const Recording& recording) {
   return static_cast<std::int64_t>(kMostPairs);
 }
 
-// A stream that ended for itself before any pair came is a device's failure.
-void RequirePairs(const LiveReport& report, bool interrupted) {
-  if (report.pairs > 0 || interrupted) return;
-  std::string why = "no pair of images came";
-  for (const std::string& warning : report.warnings) why += "; " + warning;
-  throw DeviceError(report.cameras[0].uri + " and " + report.cameras[1].uri + ": " + why);
+// A stream that ended for itself is a device's failure.
+void RequireStream(const LiveReport& report, bool interrupted) {
+  if (!report.problem.empty()) throw DeviceError(report.problem);
+  if (report.cameras[0].counts.frames + report.cameras[1].counts.frames > 0 || interrupted) return;
+  throw DeviceError(report.cameras[0].uri + " and " + report.cameras[1].uri +
+                    ": no image came in this time; look longer (--seconds), see docs/cameras.md");
 }
 
 }  // namespace
@@ -170,7 +170,7 @@ Samples SampleLive(const ResolvedCameras& cameras, const LiveArguments& argument
   samples.pairs = keeper.Release();
   samples.stream.live = true;
   const LiveReport report = live->report();
-  RequirePairs(report, stop);
+  RequireStream(report, stop);
   TakeReport(report, samples.stream);
   return samples;
 }

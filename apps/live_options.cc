@@ -103,7 +103,7 @@ void AddCameraOptions(Adder& add, CameraSettings& settings) {
       ->check(NumberWithin(kLowestFps, kFastest_hz));
   add("--pixel-format", settings.pixel_format,
       "Mono8, Mono10, Mono12Packed, Mono16, BayerRG8, …; V4L2: GREY, Y10, YUYV, MJPG, …")
-      ->check(NotEmpty());
+      ->check(NotEmpty("a pixel format"));
   add("--packet-size", settings.packet_size_bytes, "GigE Vision packets [bytes]; else negotiated")
       ->check(WholeNumberWithin(kSmallestPacket, kLargestPacket));
 }
@@ -132,7 +132,7 @@ void AddLiveOptions(CLI::App& command, LiveArguments& arguments) {
   add("--trigger", arguments.trigger, "What makes the cameras take an image")
       ->check(CLI::IsMember(TriggerWords()));
   add("--trigger-line", arguments.settings.trigger_line, "For --trigger hardware; else Line1")
-      ->check(NotEmpty());
+      ->check(NotEmpty("a line, as Line1"));
   add.Keep(command.add_flag("--ptp", arguments.settings.ptp,
                             "Switch on IEEE 1588, so that both cameras have one clock"));
   add("--timestamp-at", arguments.timestamp_at,

@@ -7,14 +7,16 @@
 namespace stereomotion::app {
 namespace {
 
-/// Software triggers a second where nothing says how many: slow enough for any camera.
+/// Triggers by command a second where nothing says how many: slow enough for any camera.
 constexpr double kUsualTrigger_hz = 20;
 
 // Where this program triggers, it needs the rate.
 double TriggerRateHz(const std::array<CameraSettings, 2>& settings) {
   double rate_hz = 0;
   for (const CameraSettings& one : settings) {
-    if (one.trigger != TriggerMode::kSoftware) continue;
+    const bool by_command =
+        one.trigger == TriggerMode::kSoftware || one.trigger == TriggerMode::kAction;
+    if (!by_command) continue;
     const double own_hz = one.frame_rate_hz.value_or(kUsualTrigger_hz);
     rate_hz = rate_hz > 0 ? std::min(rate_hz, own_hz) : own_hz;
   }

@@ -28,11 +28,11 @@ CLI::Validator NumberWithin(double lowest, double highest) {
   return Within(lowest, highest, "a number");
 }
 
-CLI::Validator NotEmpty() {
-  const auto check = [](std::string& text) -> std::string {
-    return text.empty() ? "found an empty name, expected a file" : "";
+CLI::Validator NotEmpty(const std::string& what) {
+  const auto check = [what](std::string& text) -> std::string {
+    return text.empty() ? "found an empty text, expected " + what : "";
   };
-  return {check, "FILE"};
+  return {check, ""};
 }
 
 CLI::Validator WholeNumberWithin(std::int64_t lowest, std::int64_t highest) {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdint>
+#include <string>
 
 namespace stereomotion::app {
 
@@ -18,6 +19,7 @@ CLI::Validator NumberWithin(double lowest, double highest);
 CLI::Validator WholeNumberWithin(std::int64_t lowest, std::int64_t highest);
 
 /// Accepts any text but none: an empty name is a shell variable that was not set.
-CLI::Validator NotEmpty();
+/// `what` is expected: "a file".
+CLI::Validator NotEmpty(const std::string& what = "a file");
 
 }  // namespace stereomotion::app

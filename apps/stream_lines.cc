@@ -90,13 +90,12 @@ void PoseLine(const PromptPose& prompt, const std::string& body, std::optional<d
               std::string& line) {
   line.clear();
   fmt::format_to(std::back_inserter(line),
-                 "{{\"frame\":{},\"timestamp_ns\":{},\"body\":{},\"status\":\"{}\"", prompt.frame,
+                 R"({{"frame":{},"timestamp_ns":{},"body":{},"status":"{}")", prompt.frame,
                  prompt.timestamp_ns, Quoted(body), StatusWord(prompt.status));
   if (prompt.pose != nullptr) {
     AppendPose(*prompt.pose, line);
-    fmt::format_to(std::back_inserter(line),
-                   ",\"balls\":[{},{}],\"rms_px\":", prompt.pose->balls_left,
-                   prompt.pose->balls_right);
+    fmt::format_to(std::back_inserter(line), R"(,"balls":[{},{}],"rms_px":)",
+                   prompt.pose->balls_left, prompt.pose->balls_right);
     AppendNumber(prompt.pose->rms_px, line);
   }
   if (latency_ms) fmt::format_to(std::back_inserter(line), ",\"latency_ms\":{:.2f}", *latency_ms);

@@ -47,7 +47,7 @@ void AddLiveRunOptions(CLI::App& track, TrackOptions& options) {
       .add_option("--stream", options.stream,
                   "Sends poses as JSON lines at once: - (standard output), tcp://HOST:PORT "
                   "(listens), udp://HOST:PORT, zmq+tcp://HOST:PORT")
-      ->check(NotEmpty());
+      ->check(NotEmpty("an address"));
   AddLiveOptions(track, options.live);
   auto* record = track.add_option("--record", options.record,
                                   "Records the images at the same time: REC.h5, or a folder");

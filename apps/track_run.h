@@ -7,6 +7,6 @@ namespace stereomotion::app {
 
 /// Measures the bodies of a recording into a RUN, then their motion. Returns the exit code; throws
 /// what `main` turns into one.
-int RunTrack(const TrackOptions& options, const CommonOptions& common);
+int RunTrack(const TrackOptions& given, const CommonOptions& common);
 
 }  // namespace stereomotion::app

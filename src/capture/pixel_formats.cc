@@ -177,6 +177,7 @@ std::string ConvertToGrey(const std::uint8_t* data, PixelFormat format, const Im
     ConvertRow(data + v * stride, format, layout.width_px, v, image);
   }
   if (IsBayer(format)) SmoothBayer(image);
+  image.SetGreyBits(GreyBits(format));
   return "";
 }
 

@@ -108,6 +108,7 @@ VarianceLine SumOrdinary(const std::vector<VarianceLine>& balls) {
 
 double SaturationOf(const std::vector<ImageView>& images) {
   if (images.front().type == PixelType::kGray8) return 255;
+  if (images.front().grey_bits > 0) return std::ldexp(1.0, images.front().grey_bits) - 1;
   double highest = 0;
   for (const ImageView& image : images) {
     for (int v = 0; v < image.height_px; ++v) {

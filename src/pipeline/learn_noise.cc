@@ -1,6 +1,7 @@
 #include "learn_noise.h"
 
 #include <algorithm>
+#include <cmath>
 #include <future>
 #include <optional>
 #include <string>
@@ -55,7 +56,8 @@ NoiseRecord Settle(const RigCamera& camera, const std::vector<ImageView>& images
   NoiseRecord record;
   record.origin = "default";
   if (!images.empty() && images.front().type == PixelType::kGray16) {
-    record.noise.saturation_dn = 65535;
+    const int bits = images.front().grey_bits;
+    record.noise.saturation_dn = bits > 0 ? std::ldexp(1.0, bits) - 1 : 65535;
   }
   return record;
 }

@@ -20,6 +20,7 @@ inline std::shared_ptr<Frame> MakeFrame(int camera, std::int64_t number,
   frame->device_ns = number * kPeriodNs;
   frame->exposure_us = 100.25 + static_cast<double>(camera);
   frame->image.Resize(width_px, height_px, type);
+  if (type == PixelType::kGray16) frame->image.SetGreyBits(12);
   const int bytes_in_row = width_px * (type == PixelType::kGray8 ? 1 : 2);
   for (int v = 0; v < height_px; ++v) {
     for (int i = 0; i < bytes_in_row; ++i) {

@@ -48,6 +48,7 @@ TEST_P(RecorderRoundTrip, GivesBackWhatWasTaken) {
       EXPECT_EQ(frame->timestamp_ns, taken->timestamp_ns);
       EXPECT_EQ(frame->exposure_us, taken->exposure_us);
       ASSERT_TRUE(SameImage(frame->image.View(), taken->image.View())) << camera << " " << i;
+      EXPECT_EQ(frame->image.View().grey_bits, taken->image.View().grey_bits);
     }
   }
 }

@@ -12,7 +12,7 @@ using testing::MakeTestRng;
 using testing::Uniform;
 
 std::vector<Image> NoisyImages(const SensorNoise& noise, double background_dn, double amplitude_dn,
-                               int count) {
+                               int count, int bits = 8) {
   auto rng = MakeTestRng();
   std::vector<Image> images(static_cast<std::size_t>(count));
   for (int k = 0; k < count; ++k) {
@@ -27,6 +27,7 @@ std::vector<Image> NoisyImages(const SensorNoise& noise, double background_dn, d
     options.height_px = 220;
     options.background_dn = background_dn;
     options.noise = noise;
+    options.bits = bits;
     options.seed = static_cast<std::uint64_t>(k) + 1;
     RenderBalls(balls, options, images[static_cast<std::size_t>(k)]);
   }
@@ -64,6 +65,19 @@ TEST(EstimateNoise, NearDarknessTheCutOffHalfIsMadeGood) {
   ASSERT_TRUE(learned);
   ExpectVariance(*learned, truth, 2.5, 0.06);
   ExpectVariance(*learned, truth, 40, 0.06);
+}
+
+// A camera of 12 bits whose first images are dim: nothing in them shows that it goes up to 4095.
+TEST(EstimateNoise, TheCamerasOwnBitsTellSaturation) {
+  const SensorNoise truth{14.7, 8, 0, 4095};
+  auto images = NoisyImages(truth, 60, 600, 8, 12);
+  const auto guessed = EstimateNoise(Views(images));
+  ASSERT_TRUE(guessed);
+  EXPECT_EQ(guessed->saturation_dn, 1023);
+  for (Image& image : images) image.SetGreyBits(12);
+  const auto learned = EstimateNoise(Views(images));
+  ASSERT_TRUE(learned);
+  EXPECT_EQ(learned->saturation_dn, 4095);
 }
 
 TEST(EstimateNoise, ImagesWithoutBallsTellNothing) {

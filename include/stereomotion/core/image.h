@@ -16,6 +16,7 @@ struct ImageView {
   int height_px = 0;
   std::ptrdiff_t stride_bytes = 0;
   PixelType type = PixelType::kGray8;
+  int grey_bits = 0;  ///< 16-bit storage: the highest grey value is 2^grey_bits − 1; 0: not known
 
   /// Points at the first pixel of row `v`; `T` must fit `type`.
   template <class T>
@@ -32,7 +33,10 @@ struct ImageView {
 /// Owns a grey image; keeps its memory when it is resized to the same size or smaller.
 class Image {
  public:
+  /// Forgets the grey bits, too.
   void Resize(int width_px, int height_px, PixelType type);
+  /// Says how many bits a grey value has (`ImageView::grey_bits`).
+  void SetGreyBits(int bits) { grey_bits_ = bits; }
   [[nodiscard]] ImageView View() const;
   template <class T>
   T* Row(int v) {
@@ -46,6 +50,7 @@ class Image {
   int height_px_ = 0;
   std::ptrdiff_t stride_bytes_ = 0;
   PixelType type_ = PixelType::kGray8;
+  int grey_bits_ = 0;
 };
 
 }  // namespace stereomotion

@@ -88,7 +88,7 @@ ImageStream::ImageStream(ArvCamera* camera, const std::string& uri, const Agreed
   if (gige) {
     const std::int64_t held = EnlargeReceiveBuffer(
         static_cast<std::uint16_t>(arv_gv_stream_get_port(ARV_GV_STREAM(stream_.get()))));
-    warning_ = ReceiveBufferWarning(held);
+    warning_ = ReceiveBufferWarning(uri, held);
   }
   for (std::size_t i = PoolSize(rate_hz, payload); i > 0; --i) {
     arv_stream_push_buffer(stream_.get(), arv_buffer_new_allocate(payload));

@@ -44,9 +44,9 @@ std::int64_t EnlargeReceiveBuffer(std::uint16_t port) {
   return bytes / 2;  // the kernel tells twice what was asked for: socket(7)
 }
 
-std::string ReceiveBufferWarning(std::int64_t bytes) {
+std::string ReceiveBufferWarning(const std::string& uri, std::int64_t bytes) {
   if (bytes >= kReceiveBuffer_bytes) return "";
-  return "the kernel limits the receive buffer of a camera to " + std::to_string(bytes >> 10) +
+  return uri + ": the kernel limits the receive buffer to " + std::to_string(bytes >> 10) +
          " KiB; images will be incomplete whenever this computer is busy. As root: "
          "sysctl -w net.core.rmem_max=" +
          std::to_string(kReceiveBuffer_bytes);

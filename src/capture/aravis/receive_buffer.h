@@ -16,6 +16,6 @@ std::int64_t EnlargeReceiveBuffer(std::uint16_t port);
 
 /// Says what to do where a receive buffer became no larger than `bytes`; empty where that is
 /// enough.
-std::string ReceiveBufferWarning(std::int64_t bytes);
+std::string ReceiveBufferWarning(const std::string& uri, std::int64_t bytes);
 
 }  // namespace stereomotion

@@ -3,6 +3,8 @@
 namespace stereomotion {
 namespace {
 
+constexpr const char* kGreyBits = "grey_bits";
+
 // The library is one for the whole process, so its lock must be, too.
 std::recursive_mutex& LibraryMutex() {
   static std::recursive_mutex mutex;
@@ -42,6 +44,27 @@ H5Handle H5FileAccess() {
   H5Handle access(H5Pcreate(H5P_FILE_ACCESS));
   H5Pset_file_locking(access.id(), /*use_file_locking=*/false, /*ignore_when_disabled=*/true);
   return access;
+}
+
+bool WriteGreyBits(const H5Handle& images, int bits) {
+  if (bits == 0) return true;
+  const H5Handle space(H5Screate(H5S_SCALAR));
+  const H5Handle attribute(
+      H5Acreate2(images.id(), kGreyBits, H5T_STD_I32LE, space.id(), H5P_DEFAULT, H5P_DEFAULT));
+  return attribute && H5Awrite(attribute.id(), H5T_NATIVE_INT, &bits) >= 0;
+}
+
+int ReadGreyBits(const H5Handle& images, PixelType type) {
+  if (H5Aexists(images.id(), kGreyBits) <= 0) return 0;
+  const H5Handle attribute(H5Aopen(images.id(), kGreyBits, H5P_DEFAULT));
+  const H5Handle space(H5Aget_space(attribute.id()));
+  const H5Handle stored(H5Aget_type(attribute.id()));
+  const bool is_number =
+      H5Tget_class(stored.id()) == H5T_INTEGER && H5Sget_simple_extent_npoints(space.id()) == 1;
+  int bits = 0;
+  if (!is_number || H5Aread(attribute.id(), H5T_NATIVE_INT, &bits) < 0) return 0;
+  const int most = type == PixelType::kGray8 ? 8 : 16;
+  return bits > 0 && bits <= most ? bits : 0;
 }
 
 H5Handle CreateH5File(const std::string& file, const H5Handle& access) {

@@ -5,6 +5,8 @@
 #include <mutex>
 #include <string>
 
+#include "stereomotion/core/image.h"
+
 namespace stereomotion {
 
 /// Keeps all other threads out of the HDF5 library, which distributions build without thread
@@ -41,6 +43,12 @@ std::string H5ErrorText();
 /// Makes the access list with which all files are opened: HDF5's own file locks are off, for they
 /// fail on read-only and network disks; a recording has a lock of its own.
 H5Handle H5FileAccess();
+
+/// Notes how many bits a grey value of a dataset of images has (`ImageView::grey_bits`; 0: nothing
+/// is noted).
+bool WriteGreyBits(const H5Handle& images, int bits);
+/// Reads that note; 0 where there is none that fits the images.
+int ReadGreyBits(const H5Handle& images, PixelType type);
 
 /// Creates a file that keeps its groups, the cameras, in the order in which they are made.
 H5Handle CreateH5File(const std::string& file, const H5Handle& access);

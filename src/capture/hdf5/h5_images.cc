@@ -69,7 +69,10 @@ std::string H5ImageReader::Read(std::int64_t position, Image& image) const {
   const std::string problem =
       places_.empty() ? ReadThroughHdf5(position, image)
                       : ReadDirectly(places_[static_cast<std::size_t>(position)], image);
-  if (problem.empty()) return "";
+  if (problem.empty()) {
+    image.SetGreyBits(shape_.grey_bits);
+    return "";
+  }
   image.Resize(0, 0, PixelType::kGray8);
   return name_ + "[" + std::to_string(position) + "]: " + problem;
 }

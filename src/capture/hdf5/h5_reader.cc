@@ -125,6 +125,7 @@ H5Images H5Reader::Images(const std::string& name) const {
   H5Images images{static_cast<std::int64_t>(sizes[0]), static_cast<int>(sizes[2]),
                   static_cast<int>(sizes[1]), bytes == 1 ? PixelType::kGray8 : PixelType::kGray16};
   images.offset = PlainOffset(dataset, type, images.type);
+  images.grey_bits = ReadGreyBits(dataset, images.type);
   return images;
 }
 

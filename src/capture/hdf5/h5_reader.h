@@ -18,6 +18,7 @@ struct H5Images {
   /// Where the first image lies in the file, row by row without gaps in this machine's byte order;
   /// −1: it has to be read through HDF5 (chunked, compressed, other byte order, virtual).
   std::int64_t offset = -1;
+  int grey_bits = 0;  ///< attribute `grey_bits`; 0: not told
 };
 
 /// Says from which file a run of frames of a virtual dataset comes.

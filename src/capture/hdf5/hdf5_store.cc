@@ -69,7 +69,8 @@ bool Hdf5Store::Learn(const RingItem& item) {
     const ImageView image = item.frames[side]->image.View();
     std::optional<SegmentCamera>& camera = known_[side];
     if (!camera) {
-      camera = {options_.names[side], image.width_px, image.height_px, image.type, 0};
+      camera = {options_.names[side], image.width_px, image.height_px, image.type, 0,
+                image.grey_bits};
       is_new = true;
     }
     if (image.width_px == camera->width_px && image.height_px == camera->height_px &&

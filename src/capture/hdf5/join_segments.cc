@@ -45,7 +45,8 @@ Joiner::Part Joiner::ReadPart(const H5Reader& reader, const std::string& name) c
   const std::string group = "/" + name + "/";
   const H5Images images = reader.Images(group + "images");
   Part part;
-  part.shape = {name, images.width_px, images.height_px, images.type, images.frames};
+  part.shape = {name,        images.width_px, images.height_px,
+                images.type, images.frames,   images.grey_bits};
   part.image_offset = images.offset;
   for (std::size_t i = 0; i < kFrameColumns; ++i) {
     if (i == kExposure) {

@@ -45,6 +45,8 @@ class Creator {
         "images", camera.type == PixelType::kGray8 ? H5T_STD_U8LE : H5T_STD_U16LE,
         {frames, static_cast<hsize_t>(camera.height_px), static_cast<hsize_t>(camera.width_px)},
         list);
+    const H5Handle images(H5Dopen2(group_.id(), "images", H5P_DEFAULT));
+    Require(images && WriteGreyBits(images, camera.grey_bits));
     return offsets;
   }
   void Close() { Require(H5Fflush(h5_.id(), H5F_SCOPE_LOCAL) >= 0); }

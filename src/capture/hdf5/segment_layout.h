@@ -16,6 +16,7 @@ struct SegmentCamera {
   int width_px = 0, height_px = 0;
   PixelType type = PixelType::kGray8;
   std::int64_t capacity = 0;  ///< frames
+  int grey_bits = 0;          ///< as in `ImageView`
 
   [[nodiscard]] std::int64_t row_bytes() const {
     return static_cast<std::int64_t>(width_px) * (type == PixelType::kGray8 ? 1 : 2);

@@ -99,7 +99,7 @@ class JoinedWriter {
     const hid_t type = shape.type == PixelType::kGray8 ? H5T_STD_U8LE : H5T_STD_U16LE;
     const H5Handle dataset(
         H5Dcreate2(group_.id(), "images", type, space.id(), H5P_DEFAULT, list.id(), H5P_DEFAULT));
-    Require(static_cast<bool>(dataset));
+    Require(dataset && WriteGreyBits(dataset, shape.grey_bits));
   }
 
   const fs::path& file_;
