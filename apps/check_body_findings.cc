@@ -44,7 +44,7 @@ Finding JudgePose(const BodyLook& look) {
     const std::string reason = MostFrequentLoss(look);
     finding.verdict = share < kHalfOfPoses ? Verdict::kMend : Verdict::kMind;
     finding.text += "; mostly " + reason;
-    finding.advice = AdviceFor(reason);
+    finding.advice = look.swapped.empty() ? AdviceFor(reason) : look.swapped;
   }
   return finding;
 }

@@ -25,9 +25,12 @@ struct StreamFacts {
   std::array<std::int64_t, 2> incomplete{};  ///< images with bytes missing; live only
   std::array<std::int64_t, 2> lost{};        ///< never came; live only
   std::int64_t pairs = 0;
-  double period_s = 0;   ///< 0: unknown
-  double skew_ms = 0;    ///< median of right − left in the pairs
-  double jitter_ms = 0;  ///< 1.4826 × median absolute deviation of it
+  double watched_s = 0;             ///< since the first image; live only; 0: not as long as asked
+  std::array<double, 2> rate_hz{};  ///< of the images that came; live only; 0: too few
+  std::array<double, 2> down_s{};   ///< without connection; live only
+  double period_s = 0;              ///< 0: unknown
+  double skew_ms = 0;               ///< median of right − left in the pairs
+  double jitter_ms = 0;             ///< 1.4826 × median absolute deviation of it
   bool free_running = false;
   std::vector<std::string> warnings;
 };
@@ -70,6 +73,7 @@ struct BodyLook {
   std::array<double, 2> used_balls{};  ///< mean in the pairs with a pose: left, right
   double false_blobs = 0;              ///< whole blobs that are no ball of a body, mean an image
   std::optional<double> median_chi2_dof;
+  std::string swapped;     ///< what is said of exchanged cameras; empty: they are not
   std::string first_pose;  ///< where the first body is, for a person
 };
 

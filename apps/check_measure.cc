@@ -89,6 +89,9 @@ BodyLook MeasureSamples(const Samples& samples, const MeasureSetup& setup) {
   look.poses = summary.poses;
   look.lost_by_reason = summary.lost_by_reason;
   look.median_chi2_dof = summary.median_chi2_dof;
+  for (const std::string& warning : summary.warnings) {
+    if (warning.find("the cameras are swapped") != std::string::npos) look.swapped = warning;
+  }
   return look;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lead_counter.h"
 #include "live_pair.h"
 #include "stereomotion/core/device_error.h"
 #include "stereomotion/core/median.h"
@@ -62,6 +63,9 @@ class PairKeeper {
   std::int64_t taken_ = 0, stride_ = 1;
 };
 
+constexpr const char* kCutShort =
+    "interrupted: judged by what came until then, which is less than was asked for (--seconds)";
+
 double DifferenceMs(const FramePair& pair) {
   return SecondsBetween(pair.left.timestamp_ns, pair.right.timestamp_ns) * kMsPerSecond;
 }
@@ -100,11 +104,13 @@ void SummarizeDifferences(const std::vector<FramePair>& pairs, StreamFacts& stre
   stream.free_running = stream.timed && Drifts(std::move(differences));
 }
 
-void TakeReport(const LiveReport& report, StreamFacts& stream) {
+void TakeReport(const LiveReport& report, const LeadCounter& lead, StreamFacts& stream) {
   for (const std::size_t side : {0, 1}) {
     const LiveCameraReport& camera = report.cameras[side];
     stream.frames[side] = camera.counts.frames;
-    stream.unpaired[side] = camera.unpaired;
+    stream.unpaired[side] = std::max<std::int64_t>(0, camera.unpaired - lead.alone(side));
+    stream.rate_hz[side] = camera.rate_hz;
+    stream.down_s[side] = camera.down_s;
     stream.incomplete[side] = camera.counts.incomplete + camera.counts.wrong_format;
     stream.lost[side] = camera.counts.lost + camera.counts.underruns;
   }
@@ -160,18 +166,22 @@ Samples SampleLive(const ResolvedCameras& cameras, const LiveArguments& argument
                    const std::atomic<bool>& stop) {
   LiveArguments timed = arguments;
   timed.live.duration_s = seconds;
-  const std::unique_ptr<LivePairs> live = OpenLivePair(cameras, timed);
+  LeadCounter lead;
+  const std::unique_ptr<LivePairs> live = OpenLivePair(cameras, timed, &lead);
   live->Start();
   Samples samples;
   PairKeeper keeper;
   FramePair pair;
   for (std::int64_t i = 0; !stop && live->Read(i, pair); ++i) keeper.Take(pair);
+  const bool interrupted = stop;
   live->Stop("done");
   samples.pairs = keeper.Release();
   samples.stream.live = true;
   const LiveReport report = live->report();
-  RequireStream(report, stop);
-  TakeReport(report, samples.stream);
+  RequireStream(report, interrupted);
+  TakeReport(report, lead, samples.stream);
+  if (!interrupted) samples.stream.watched_s = seconds;
+  if (interrupted) samples.stream.warnings.emplace_back(kCutShort);
   return samples;
 }
 

@@ -7,6 +7,9 @@
 
 #include "learn_body_run.h"
 #include "live_run.h"
+#include "stereomotion/io/body_folder.h"
+#include "stereomotion/io/run_writer.h"
+#include "track_results.h"
 
 namespace stereomotion::app {
 namespace {
@@ -34,6 +37,17 @@ std::string Record(const std::string& file, const TrackOptions& options, const T
   return live.report().end == "interrupted" ? "interrupted" : "";
 }
 
+// Whatever becomes of the run, nobody has to move the bodies again.
+void KeepBodies(const std::filesystem::path& folder, const TrackOptions& options,
+                const MeasureSetup& setup) {
+  PrepareRunFolder(folder, /*overwrite=*/true);  // an earlier run was of other bodies
+  for (std::size_t i = 0; i < setup.bodies.size(); ++i) {
+    std::error_code told_by_writing;
+    std::filesystem::create_directories(FolderOfBody(folder, setup.bodies, i), told_by_writing);
+  }
+  CopySetup(folder, options, setup);
+}
+
 }  // namespace
 
 std::optional<int> LearnBodiesLive(const std::filesystem::path& folder, const TrackOptions& options,
@@ -54,6 +68,7 @@ std::optional<int> LearnBodiesLive(const std::filesystem::path& folder, const Tr
   OpenRecorded(options, recorded, inputs);
   const std::optional<int> failed = LearnBodiesOf(options, inputs, common);
   inputs.recording.reset();
+  if (!failed) KeepBodies(folder, options, inputs.setup);
   return failed;
 }
 

@@ -7,7 +7,10 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json OrNull(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+template <class Number>
+Json OrNull(const std::optional<Number>& number) {
+  return number ? Json(*number) : Json(nullptr);
+}
 
 Json CountsJson(const DeviceCounts& counts) {
   return {{"frames", counts.frames},
@@ -57,14 +60,19 @@ Json RecordedJson(const LiveExtras& extras) {
           {"problem", counts.problem.empty() ? Json(nullptr) : Json(counts.problem)}};
 }
 
+// Of the cameras, else of the recording.
+Json ProblemJson(const LiveReport& report, const LiveExtras& extras) {
+  std::string problem = report.problem;
+  if (problem.empty() && extras.recorded) problem = extras.recorded->problem;
+  return problem.empty() ? Json(nullptr) : Json(problem);
+}
+
 }  // namespace
 
 std::string LiveJson(const LiveReport& report, const LiveExtras& extras) {
-  const Json problem = report.problem.empty() ? Json(nullptr) : Json(report.problem);
-  const Json lost = extras.lost_stream_lines ? Json(*extras.lost_stream_lines) : Json(nullptr);
   const Json json = {
       {"end", report.end},
-      {"problem", problem},
+      {"problem", ProblemJson(report, extras)},
       {"pairs", report.pairs},
       {"dropped_pairs", report.dropped_pairs},
       {"most_queued", report.most_queued},
@@ -80,7 +88,7 @@ std::string LiveJson(const LiveReport& report, const LiveExtras& extras) {
       {"latency_ms",
        {{"median", OrNull(extras.latency_median_ms)}, {"p99", OrNull(extras.latency_p99_ms)}}},
       {"recorded", RecordedJson(extras)},
-      {"lost_stream_lines", lost},
+      {"lost_stream_lines", OrNull(extras.lost_stream_lines)},
       {"warnings", report.warnings}};
   // What a camera calls itself need not be UTF-8.
   return json.dump(2, ' ', false, Json::error_handler_t::replace);

@@ -71,6 +71,11 @@ void AddSet(int camera, std::string set, CameraSettings& settings) {
                     "', expected NAME=VALUE with the camera's own name of the control: --set "
                     "GammaEnable=false, --set left:BlackLevel=4");
   }
+  const std::size_t colon = set.find(':');
+  if (colon < equals) {
+    throw UserError("--set: found '" + as_given + "' for '" + set.substr(0, colon) +
+                    "', expected left: or right: before NAME=VALUE, or neither for both cameras");
+  }
   if (is_ours) settings.controls[set.substr(0, equals)] = set.substr(equals + 1);
 }
 

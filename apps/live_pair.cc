@@ -1,8 +1,13 @@
 #include "live_pair.h"
 
 #include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <string_view>
 
+#include "stereomotion/core/device_error.h"
 #include "stereomotion/core/user_error.h"
+#include "stop_signal.h"
 
 namespace stereomotion::app {
 namespace {
@@ -29,6 +34,30 @@ std::array<CameraSettings, 2> SettingsOf(const ResolvedCameras& cameras,
           SettingsFor(1, cameras.right.settings, arguments)};
 }
 
+bool IsNamed(const DeviceInfo& device, const std::string& uri) {
+  constexpr const char* kV4l2 = "v4l2:";
+  const std::string aravis = "aravis:";
+  if (device.uri == uri || aravis + device.serial == uri || aravis + device.address == uri) {
+    return true;
+  }
+  const std::size_t start = std::string_view(kV4l2).size();
+  if (device.uri.rfind(kV4l2, 0) != 0 || uri.rfind(kV4l2, 0) != 0) return false;
+  std::error_code absent;
+  return std::filesystem::equivalent(device.uri.substr(start), uri.substr(start), absent);
+}
+
+[[noreturn]] void ThrowSameCamera(const std::string& left, const std::string& right) {
+  throw UserError("--left " + left + " and --right " + right + ": both are the same camera, " +
+                  "expected two (`stereomotion cameras` lists them)");
+}
+
+// The second name of one camera fails, since the first has opened it.
+void RefuseSameCamera(const std::string& left, const std::string& right) {
+  for (const DeviceInfo& device : ListCameras()) {
+    if (IsNamed(device, left) && IsNamed(device, right)) ThrowSameCamera(left, right);
+  }
+}
+
 }  // namespace
 
 bool AreLive(const ResolvedCameras& cameras) {
@@ -45,11 +74,19 @@ OpenedCameras OpenCameras(const ResolvedCameras& cameras, const LiveArguments& a
     throw UserError("--left and --right: both are " + cameras.left.live + ", expected two cameras");
   }
   const std::array<CameraSettings, 2> settings = SettingsOf(cameras, arguments);
+  const std::atomic<bool>& stop = CatchStopSignals();  // killed now, they would stay controlled
   OpenedCameras opened;
   const std::array<const std::string*, 2> uris = {&cameras.left.live, &cameras.right.live};
   for (std::size_t i = 0; i < uris.size(); ++i) {
-    opened.devices[i] = OpenCamera(*uris[i], settings[i]);
+    if (i > 0 && IsNamed(opened.info[0], *uris[1])) ThrowSameCamera(*uris[0], *uris[1]);
+    try {
+      opened.devices[i] = OpenCamera(*uris[i], settings[i]);
+    } catch (const DeviceError&) {
+      if (i > 0) RefuseSameCamera(*uris[0], *uris[1]);
+      throw;
+    }
     opened.info[i] = opened.devices[i]->info();
+    if (stop) throw DeviceError("interrupted while the cameras were opened; nothing was changed");
   }
   return opened;
 }

@@ -74,7 +74,9 @@ double LiveRun::Tell(const PromptPose& prompt) {
           .count();
   const std::int64_t taken_ns = pairs_->HostTimeOf(prompt.timestamp_ns, prompt.exposure_us);
   const double latency_ms = kMsPerNs * static_cast<double>(now_ns - taken_ns);
-  if (prompt.pose != nullptr && prompt.frame != last_frame_) {  // once a pair, of several bodies
+  if (measuring_since_ns_ == 0) measuring_since_ns_ = now_ns;
+  const bool is_new = prompt.frame != last_frame_;  // once a pair, of several bodies
+  if (prompt.pose != nullptr && is_new && taken_ns >= measuring_since_ns_) {
     latency_ms_.Add(latency_ms);
     last_frame_ = prompt.frame;
   }
@@ -88,15 +90,16 @@ void LiveRun::Watch() {
     std::this_thread::sleep_for(kLook);
     if (stop) pairs_->Stop("interrupted");  // the first reason stays
     if (look % kLooksAReport != 0) continue;
-    const LiveReport report = pairs_->report();
+    LiveReport report = pairs_->report();
+    const std::optional<RecorderCounts> counts = recorded();
+    if (counts) AddRecorderWarnings(*counts, report);
     TellNewWarnings(report);
-    if (view_.IsDue()) view_.Show(report, recorded());
+    if (view_.IsDue()) view_.Show(report, counts);
   }
 }
 
 void LiveRun::TellNewWarnings(const LiveReport& report) {
-  for (const std::string& warning : report.warnings) {
-    if (!warnings_told_.insert(warning).second) continue;
+  for (const std::string& warning : told_.New(report)) {
     view_.Clear();
     spdlog::warn(warning);
   }
@@ -114,11 +117,17 @@ void LiveRun::End() {
   report_ = pairs_->report();
   pairs_.reset();  // nothing comes to the recorder any more
   view_.Clear();
+  EndRecording();
   TellNewWarnings(report_);
+}
+
+void LiveRun::EndRecording() {
   if (recorder_ == nullptr) return;
   recorder_->Finish();
   counts_ = recorder_->counts();
   recorder_.reset();
+  AddRecorderWarnings(*counts_, report_);
+  if (report_.problem.empty()) report_.problem = counts_->problem;
 }
 
 std::string LiveRun::Json(std::optional<std::int64_t> lost_stream_lines) const {
@@ -129,11 +138,6 @@ std::string LiveRun::Json(std::optional<std::int64_t> lost_stream_lines) const {
   extras.recording = record_;
   extras.lost_stream_lines = lost_stream_lines;
   return LiveJson(report_, extras);
-}
-
-std::string LiveRun::problem() const {
-  if (!report_.problem.empty()) return report_.problem;
-  return counts_ ? counts_->problem : std::string();
 }
 
 }  // namespace stereomotion::app

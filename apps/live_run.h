@@ -4,7 +4,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "stereomotion/capture/recorder.h"
 #include "stereomotion/pipeline/level_histogram.h"
 #include "stereomotion/pipeline/measure.h"
+#include "told_warnings.h"
 
 namespace stereomotion::app {
 
@@ -54,23 +54,27 @@ class LiveRun {
   /// Spells the object `live` of run.json.
   [[nodiscard]] std::string Json(std::optional<std::int64_t> lost_stream_lines) const;
   /// Says why it did not end as asked, for a person; empty: it did.
-  [[nodiscard]] std::string problem() const;
+  [[nodiscard]] const std::string& problem() const { return report_.problem; }
   void ClearView() { view_.Clear(); }
 
  private:
   void Watch();
   void TellNewWarnings(const LiveReport& report);
+  void EndRecording();
   [[nodiscard]] std::optional<RecorderCounts> recorded() const;
 
   std::string record_;
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<LivePairs> pairs_;
   LiveView view_;
-  LevelHistogram latency_ms_;  ///< of the pairs with a pose
+  /// Of the pairs with a pose that were taken since measuring runs: those before waited for the
+  /// clocks and the noise to be learned.
+  LevelHistogram latency_ms_;
+  std::int64_t measuring_since_ns_ = 0;  ///< host time of the first result; 0: none yet
   std::int64_t last_frame_ = -1;
   LiveReport report_;
   std::optional<RecorderCounts> counts_;
-  std::set<std::string> warnings_told_;
+  ToldWarnings told_;
   std::atomic<bool> ended_{false};
   std::thread watcher_;
 };

@@ -107,7 +107,7 @@ std::vector<std::string> LiveView::Alarms(const LiveReport& report,
   dropped_shown_ = report.dropped_pairs;
   if (report.free_running) alarms.emplace_back("! the cameras do not take their images together");
   if (recorded && !recorded->problem.empty()) alarms.push_back("! " + recorded->problem);
-  if (recorded && recorded->dropped > 0) {
+  if (recorded && recorded->problem.empty() && recorded->dropped > 0) {
     alarms.push_back(fmt::format("! the disk is too slow: {} not recorded", recorded->dropped));
   }
   return alarms;

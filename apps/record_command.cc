@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "commands.h"
 #include "number_within.h"
@@ -52,6 +53,16 @@ int RunRecord(const RecordOptions& options, const CommonOptions& common) {
   return RunLiveRecord(options, common);
 }
 
+// An option that changes nothing is a misunderstanding.
+void RefuseUnused(CLI::App& record, CLI::Option* repair, CLI::Option* from) {
+  const std::set<std::string> of_export = {"--output", "--force", "--image-format"};
+  for (CLI::Option* option : record.get_options()) {
+    if (option == repair || option == from || option == record.get_help_ptr()) continue;
+    repair->excludes(option);
+    if (of_export.count(option->get_name()) == 0) from->excludes(option);
+  }
+}
+
 void AddOtherTasks(CLI::App& record, RecordOptions& options) {
   auto* repair = record.add_option("--repair", options.repair,
                                    "Instead of recording: makes a recording readable that a crash "
@@ -64,7 +75,9 @@ void AddOtherTasks(CLI::App& record, RecordOptions& options) {
   record
       .add_option("--image-format", options.image_extension, "Of the exported images; all lossless")
       ->check(CLI::IsMember({"png", "tif", "pgm"}))
-      ->capture_default_str();
+      ->capture_default_str()
+      ->needs(from);
+  RefuseUnused(record, repair, from);
 }
 
 }  // namespace
@@ -81,8 +94,8 @@ Run AddRecordCommand(CLI::App& app) {
   record->add_option("--count", options->count, "Ends after so many pairs")
       ->check(WholeNumberWithin(1, kMostFrames));
   record->add_flag("--force", options->force, "Replace an existing recording");
-  AddOtherTasks(*record, *options);
   AddLiveOptions(*record, options->live);
+  AddOtherTasks(*record, *options);
   record->footer(
       "Ends at --duration, --count or Ctrl-C. Whatever happens, all but the last second can be "
       "read.\nExample: stereomotion record --left aravis:Basler-21876 --right aravis:Basler-21877 "

@@ -27,11 +27,12 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+// The folder into which the output comes, or would come once the missing ones are made: nothing is
+// left behind where there is nothing to record.
 fs::path FolderOf(const fs::path& output) {
-  const fs::path folder = fs::absolute(output).lexically_normal().parent_path();
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw OutputError(folder.string() + ": cannot be made: " + error.message());
+  fs::path folder = fs::absolute(output).lexically_normal().parent_path();
+  std::error_code none;
+  while (!fs::exists(folder, none) && folder.has_relative_path()) folder = folder.parent_path();
   return folder;
 }
 
@@ -58,7 +59,7 @@ double MeasureSpeed(const fs::path& folder, double most_bytes) {
 
 double FreeBytes(const fs::path& output) {
   std::error_code error;
-  const fs::space_info space = fs::space(fs::absolute(output).parent_path(), error);
+  const fs::space_info space = fs::space(FolderOf(output), error);
   return error ? 0 : static_cast<double>(space.available);
 }
 

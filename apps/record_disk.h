@@ -11,8 +11,8 @@ struct DiskState {
   double write_bytes_s = 0;  ///< as measured; 0: not measured
 };
 
-/// Asks for the free room and writes a file for a fraction of a second, which it removes. Makes the
-/// folder for the output. Throws `OutputError` where nothing can be written there.
+/// Asks for the free room and writes a file for a fraction of a second, which it removes. Makes
+/// no folder for the output. Throws `OutputError` where nothing can be written there.
 DiskState LookAtDisk(const std::filesystem::path& output);
 
 /// Asks for the free room; 0 where that is not known.

@@ -42,17 +42,20 @@ void RecordProgress::TellOfDisk(double bytes_s) {
       output_.string(), disk_.write_bytes_s / kBytesPerMb, bytes_s / kBytesPerMb);
 }
 
+void RecordProgress::TellWarnings(const LiveReport& report, const RecorderCounts& counts) {
+  for (const std::string& warning : told_.New(report)) {
+    Clear();
+    spdlog::warn(warning);
+  }
+  if (dropped_told_ || counts.dropped == 0 || !counts.problem.empty()) return;
+  Clear();
+  spdlog::warn("{}: the disk is too slow: pairs are dropped (and counted)", output_.string());
+  dropped_told_ = true;
+}
+
 void RecordProgress::Show(const LiveReport& report, const RecorderCounts& counts) {
   const Clock::time_point now = Clock::now();
-  if (report.warnings.size() > warnings_told_) Clear();
-  for (; warnings_told_ < report.warnings.size(); ++warnings_told_) {
-    spdlog::warn(report.warnings[warnings_told_]);
-  }
-  if (dropped_told_ == 0 && counts.dropped > 0) {
-    Clear();
-    spdlog::warn("{}: the disk is too slow: pairs are dropped (and counted)", output_.string());
-    dropped_told_ = counts.dropped;
-  }
+  TellWarnings(report, counts);
   if (bytes_at_first_ == 0 && counts.bytes > 0) {
     first_bytes_ = now;
     bytes_at_first_ = counts.bytes;

@@ -6,6 +6,7 @@
 #include "record_disk.h"
 #include "stereomotion/capture/live_report.h"
 #include "stereomotion/capture/recorder.h"
+#include "told_warnings.h"
 
 namespace stereomotion::app {
 
@@ -24,14 +25,15 @@ class RecordProgress {
  private:
   using Clock = std::chrono::steady_clock;
   void TellOfDisk(double bytes_s);
+  void TellWarnings(const LiveReport& report, const RecorderCounts& counts);
   void Draw(const LiveReport& report, const RecorderCounts& counts, double bytes_s);
 
   const std::filesystem::path output_;
   DiskState disk_;
   const bool on_terminal_;
   bool disk_told_ = false;
-  std::int64_t dropped_told_ = 0;
-  std::size_t warnings_told_ = 0;
+  bool dropped_told_ = false;
+  ToldWarnings told_;
   Clock::time_point start_ = Clock::now(), first_bytes_ = start_, drawn_ = start_;
   std::int64_t bytes_at_first_ = 0;
 };

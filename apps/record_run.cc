@@ -56,7 +56,19 @@ void WriteJson(const RecordOptions& options, const CommonOptions& common, const 
       {"command", common.command_line},
       {"live", nlohmann::ordered_json::parse(LiveJson(report, extras))}};
   constexpr int kIndent = 2;
-  WriteFileAtomically(JsonBeside(options.output), json.dump(kIndent) + "\n");
+  // File names and what a camera calls itself need not be UTF-8.
+  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
+  WriteFileAtomically(JsonBeside(options.output), json.dump(kIndent, ' ', false, replace) + "\n");
+}
+
+// On a disk that is full there is no room for it: what filled it is the problem to tell.
+void TryWriteJson(const RecordOptions& options, const CommonOptions& common,
+                  const LiveReport& report, const RecorderCounts& counts) {
+  try {
+    WriteJson(options, common, report, counts);
+  } catch (const OutputError& error) {
+    spdlog::debug(error.what());
+  }
 }
 
 // Pairs are taken from the stream by nobody else: they only have to go.
@@ -113,16 +125,37 @@ void PrintSummary(const LiveReport& report, const RecorderCounts& counts) {
   }
 }
 
+// One that is no live camera: an unknown name, or images that are there already.
+void RequireLive(const char* option, const std::string& argument, const ResolvedCamera& camera,
+                 const fs::path& rig_file) {
+  if (!camera.live.empty()) return;
+  const std::string found = std::string(option) + " " + argument + ": ";
+  std::error_code ignored;
+  fs::path file = camera.path;
+  std::string name;
+  SplitRecordingArgument(argument, file, name);  // of REC.h5:NAME the file
+  if (fs::exists(file, ignored)) {
+    throw UserError(found + "is recorded already, expected a live camera (aravis:… or v4l2:…); " +
+                    "--export makes image folders of a recording file");
+  }
+  const std::string rig = rig_file.empty() ? "a rig.yaml" : rig_file.string();
+  throw UserError(found + "found neither a camera of " + rig +
+                  " with a live source nor a folder, "
+                  "expected a live camera: aravis:… or v4l2:… (`stereomotion cameras` lists them)");
+}
+
 int Conclude(const RecordOptions& options, const CommonOptions& common, const LiveReport& report,
              const RecorderCounts& counts) {
-  WriteJson(options, common, report, counts);
   if (!common.quiet) PrintSummary(report, counts);
-  fmt::print("{}\n", options.output);
+  std::error_code none;  // a file is taken away where no image came
+  if (fs::exists(options.output, none)) fmt::print("{}\n", options.output);
   if (!counts.problem.empty()) {
+    TryWriteJson(options, common, report, counts);
     throw OutputError(
         fmt::format("{}: the recording ended early, {} pairs before that are readable",
                     counts.problem, counts.pairs));
   }
+  WriteJson(options, common, report, counts);
   if (!report.problem.empty()) throw DeviceError(report.problem);
   if (counts.dropped > 0) {
     spdlog::warn("{} pairs were dropped: the disk is too slow for these cameras", counts.dropped);
@@ -137,14 +170,11 @@ int RunLiveRecord(const RecordOptions& options, const CommonOptions& common) {
   const Rig rig = LoadRig(options.rig, rig_file);
   const ResolvedCameras cameras = ResolveCameras(options.left, options.right, rig, rig_file);
   for (const auto& note : cameras.notes) spdlog::info(note);
-  if (!AreLive(cameras)) {
-    throw UserError("--left " + options.left + ": is recorded already, expected a live camera " +
-                    "(aravis:… or v4l2:…); --export makes image folders of a recording file");
-  }
+  RequireLive("--left", options.left, cameras.left, rig_file);
+  RequireLive("--right", options.right, cameras.right, rig_file);
   const DiskState disk = LookAtDisk(options.output);
   OpenedCameras opened = OpenCameras(cameras, options.live);
-  RecorderOptions recording;
-  recording.output = options.output;
+  RecorderOptions recording{options.output};
   recording.names = {NameOf(cameras.left, rig, "cam0"), NameOf(cameras.right, rig, "cam1")};
   recording.overwrite = options.force;
   const std::unique_ptr<Recorder> recorder = StartRecorder(recording);

@@ -19,6 +19,10 @@ const std::atomic<bool>& CatchStopSignals() {
   action.sa_flags = static_cast<int>(SA_RESETHAND);  // the second signal meets the default: the end
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction before {};
+  sigaction(SIGHUP, nullptr, &before);
+  const bool is_ignored = (before.sa_flags & SA_SIGINFO) == 0 && before.sa_handler == SIG_IGN;
+  if (!is_ignored) sigaction(SIGHUP, &action, nullptr);  // nohup: it is to go on
   return stop_requested;
 }
 

@@ -4,7 +4,8 @@
 
 namespace stereomotion::app {
 
-/// Makes SIGINT and SIGTERM set the returned flag; a second one ends the program at once.
+/// Makes SIGINT, SIGTERM and SIGHUP (the terminal was closed; not where `nohup` ignores it) set the
+/// returned flag; a second one ends the program at once.
 const std::atomic<bool>& CatchStopSignals();
 
 }  // namespace stereomotion::app

@@ -93,8 +93,8 @@ class ZeroMqTarget : public StreamTarget {
     Close();
     throw OutputError("--stream " + address.text + ": cannot bind " + address.endpoint + ": " +
                       reason +
-                      "; expected a ZeroMQ endpoint of this machine that is free, as "
-                      "zmq+tcp://127.0.0.1:5556 or zmq:ipc:///tmp/poses");
+                      "; expected a ZeroMQ endpoint of this machine that is free (an address, "
+                      "no name as localhost), as zmq+tcp://127.0.0.1:5556 or zmq:ipc:///tmp/poses");
   }
   ~ZeroMqTarget() override { Close(); }
   ZeroMqTarget(const ZeroMqTarget&) = delete;
@@ -130,14 +130,14 @@ std::unique_ptr<StreamTarget> OpenUdpTarget(const StreamAddress& address,
         setsockopt(fd, SOL_SOCKET, SO_BROADCAST, &on, sizeof on);
         return connect(fd, place.ai_addr, place.ai_addrlen);
       }));
-  target->Write(hello);
+  if (!hello.empty()) target->Write(hello);
   return target;
 }
 
 std::unique_ptr<StreamTarget> OpenZeroMqTarget(const StreamAddress& address,
                                                const std::string& hello) {
   auto target = std::make_unique<ZeroMqTarget>(address);
-  target->Write(hello);
+  if (!hello.empty()) target->Write(hello);
   return target;
 }
 

@@ -30,7 +30,8 @@ class StreamTarget {
 };
 
 /// Opens a target; `hello` is the line that each receiver gets first, `patience` how long a full
-/// receiver may be waited for. Throws `OutputError` where the address cannot be used.
+/// receiver may be waited for. An empty hello is
+/// not sent. Throws `OutputError` where the address cannot be used.
 std::unique_ptr<StreamTarget> OpenStreamTarget(const StreamAddress& address,
                                                const std::string& hello,
                                                std::chrono::milliseconds patience);

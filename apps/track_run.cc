@@ -14,9 +14,11 @@
 #include "learn_mask_run.h"
 #include "stereomotion/core/output_error.h"
 #include "stereomotion/io/run_writer.h"
+#include "stop_signal.h"
 #include "track_measure.h"
 #include "track_record.h"
 #include "track_results.h"
+#include "track_targets.h"
 
 namespace stereomotion::app {
 namespace {
@@ -27,13 +29,15 @@ std::string DefaultRunName() {
   return fmt::format("run-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
 }
 
-// An empty folder that was made for nothing is taken back.
+// What an earlier run left in the folder stays until the new one is sure to start (`RunWriter`). An
+// empty folder that was made for nothing is taken back.
 class FolderOfRun {
  public:
   FolderOfRun(fs::path folder, bool force) : folder_(std::move(folder)) {
     std::error_code ignored;
     is_new_ = !fs::exists(folder_, ignored);
-    PrepareRunFolder(folder_, force);
+    CheckRunFolder(folder_, force);
+    if (is_new_) PrepareRunFolder(folder_, force);
   }
   ~FolderOfRun() {
     std::error_code not_empty;
@@ -66,9 +70,15 @@ struct Parts {
   std::unique_ptr<PoseStream> stream;
 };
 
+// The recorder of `LiveRun` comes last: with --force it removes the recording before.
 Parts OpenParts(const TrackInputs& inputs, const TrackOptions& options, const CommonOptions& common,
                 const RunRecord& record) {
   Parts parts;
+  if (!options.stream.empty()) {
+    const StreamHello hello{
+        {record.left_camera, record.right_camera}, NamesOfBodies(inputs), inputs.is_live};
+    parts.stream = std::make_unique<PoseStream>(options.stream, hello);
+  }
   if (inputs.is_live) {
     LiveRunSetup run{inputs.setup, inputs.cameras, options.live, options.rig, options.record};
     run.arguments.live.count = options.count;
@@ -76,10 +86,6 @@ Parts OpenParts(const TrackInputs& inputs, const TrackOptions& options, const Co
     run.quiet = common.quiet;
     parts.live = std::make_unique<LiveRun>(run);
   }
-  if (options.stream.empty()) return parts;
-  const StreamHello hello{
-      {record.left_camera, record.right_camera}, NamesOfBodies(inputs), inputs.is_live};
-  parts.stream = std::make_unique<PoseStream>(options.stream, hello);
   return parts;
 }
 
@@ -162,10 +168,13 @@ int RunTrack(const TrackOptions& given, const CommonOptions& common) {
   TrackInputs inputs = LoadTrackInputs(options);
   if (!options.learn_mask.empty()) return RunLearnMask(options, inputs, common);
   if (!options.stream.empty()) ParseStreamAddress(options.stream);  // now, not after learning
-  const FolderOfRun folder(options.output.empty() ? DefaultRunName() : options.output,
-                           options.force);
+  const fs::path run = options.output.empty() ? DefaultRunName() : options.output;
+  CheckRecordTarget(options, run);
+  if (inputs.is_live) CatchStopSignals();  // killed while they are opened, cameras stay controlled
+  const FolderOfRun folder(run, options.force);
   RunRecord record = StartRecord(inputs, options, common);
   if (options.bodies.empty()) {
+    TryStream(options);
     const auto failed = inputs.is_live ? LearnBodiesLive(folder.path(), options, inputs, common)
                                        : LearnBodiesOf(options, inputs, common);
     if (failed) return *failed;

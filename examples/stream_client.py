@@ -77,10 +77,20 @@ def lines_of(address, wait_s):
     sys.exit(f"{address}: expected -, tcp://HOST:PORT, udp://HOST:PORT or zmq+tcp://HOST:PORT")
 
 
+def message_of(line):
+    try:
+        message = json.loads(line)
+    except ValueError:
+        message = None
+    if isinstance(message, dict) and {"format", "body", "end"} & set(message):
+        return message
+    return sys.exit(f"found {line.strip()[:60]!r}, expected lines of JSON ({FORMAT})")
+
+
 def messages(address, wait_s=10.0):
     """Yields ("hello" | "pose" | "end", message); ends after the end. A hello may come again."""
     for line in lines_of(address, wait_s):
-        message = json.loads(line)
+        message = message_of(line)
         if "format" in message:
             if message["format"] != FORMAT:
                 sys.exit(f"found a stream of format {message['format']}, expected {FORMAT}")
@@ -116,7 +126,10 @@ def parse_arguments():
     parser.add_argument("--every", type=int, default=1, metavar="N", help="print every Nth pose")
     parser.add_argument("--wait-s", type=float, default=10.0,
                         help="so long the program is waited for (default: 10)")
-    return parser.parse_args()
+    arguments = parser.parse_args()
+    if arguments.every < 1:
+        parser.error(f"--every: found {arguments.every}, expected 1 or more")
+    return arguments
 
 
 def show(kind, message, as_json):
@@ -157,5 +170,5 @@ if __name__ == "__main__":
         sys.exit(main())
     except (KeyboardInterrupt, BrokenPipeError):
         sys.exit(0)
-    except OSError as problem:
+    except (OSError, UnicodeDecodeError) as problem:
         sys.exit(f"stream_client: {problem}")

@@ -20,7 +20,7 @@ for argument in "$@"; do
     --lint) packages+=(clang-tidy clang-format) ;;
     # Tests of live cameras: a network and a kernel of their own; other readers of our files.
     --tests) packages+=(iproute2 util-linux qemu-system-x86 busybox-static cpio make libelf1
-      v4l-utils python3-h5py python3-zmq) ;;
+      python3-h5py) ;;
     --plots) packages+=(python3-matplotlib) ;;
     --fuzz) packages+=(clang libclang-rt-dev) ;;
     *)

@@ -131,8 +131,9 @@ std::string CheckLayout(PixelFormat format, const ImageLayout& layout, std::size
   const auto rows = static_cast<std::size_t>(RowsOf(format, layout.height_px));
   const std::size_t needed = stride * (rows - 1) + row_bytes;
   if (layout.bytes >= needed) return "";
-  return "came with " + std::to_string(layout.bytes) + " bytes, " + size + " pixels need " +
-         std::to_string(needed);
+  // Not how many came: thousands of damaged images would be as many different problems.
+  return "came with fewer than the " + std::to_string(needed) + " bytes that " + size +
+         " pixels need";
 }
 
 std::string Fail(Image& image, const std::string& why) {

@@ -164,11 +164,26 @@ class StreamPair : public Recording {
 
 }  // namespace
 
+namespace {
+
+// One camera may be named in several ways: "rec.h5:cam0", "./rec.h5:cam0".
+bool AreTheSame(const fs::path& left, const fs::path& right) {
+  std::error_code ignored;
+  fs::path left_file, right_file;
+  std::string left_camera, right_camera;
+  if (SplitRecordingArgument(left.string(), left_file, left_camera) &&
+      SplitRecordingArgument(right.string(), right_file, right_camera)) {
+    return left_camera == right_camera && fs::equivalent(left_file, right_file, ignored);
+  }
+  return left == right || fs::equivalent(left, right, ignored);
+}
+
+}  // namespace
+
 std::unique_ptr<Recording> OpenRecording(const fs::path& left, const fs::path& right,
                                          const RecordingOptions& options) {
   RequireRate(options.fps);
-  std::error_code ignored;
-  if (left == right || fs::equivalent(left, right, ignored)) {
+  if (AreTheSame(left, right)) {
     throw UserError(left.string() + ": left and right are the same, expected two cameras");
   }
   return std::make_unique<StreamPair>(left, right, options);

@@ -68,6 +68,8 @@ class Table {
     return static_cast<std::size_t>(column) >= cells_.size() ||
            cells_[static_cast<std::size_t>(column)].empty();
   }
+  /// Whether the line is the file's last and was not brought to its end.
+  [[nodiscard]] bool IsUnended() const { return stream_.eof(); }
   [[noreturn]] void Fail(const std::string& found, const std::string& expected) const {
     throw UserError(file_.string() + ":" + std::to_string(line_number_) + ": found " + found +
                     ", expected " + expected);
@@ -103,6 +105,53 @@ std::int64_t ReadPair(const Table& table, int column, std::int64_t& last) {
   return pair;
 }
 
+/// Reads the rows one by one; each is checked against those before.
+class RowReader {
+ public:
+  explicit RowReader(const std::filesystem::path& file) : table_(file) {
+    if (frame_ < 0) table_.Fail("no column 'frame'", "frame,timestamp_ns[,exposure_us]");
+    if (time_ < 0) table_.Fail("no column 'timestamp_ns'", "frame,timestamp_ns[,exposure_us]");
+  }
+  std::vector<FrameInfo> ReadAll() {
+    while (table_.NextLine()) {
+      try {
+        rows_.push_back(ReadRow());
+      } catch (const UserError&) {
+        // A recorder, which alone writes pairs, was ended or had a full disk in that row.
+        if (pair_ < 0 || !table_.IsUnended()) throw;
+        break;
+      }
+    }
+    if (rows_.empty()) table_.Fail("no rows", "a row a frame");
+    return std::move(rows_);
+  }
+
+ private:
+  FrameInfo ReadRow() {
+    FrameInfo row{table_.Number<std::int64_t>(frame_), table_.Number<std::int64_t>(time_), 0};
+    if (exposure_ >= 0 && !table_.IsBlank(exposure_)) {
+      row.exposure_us = ReadExposure(table_, exposure_);
+    }
+    if (pair_ >= 0) row.pair = ReadPair(table_, pair_, last_pair_);
+    if (row.index < 0) table_.Fail("frame " + std::to_string(row.index), "0 or more");
+    if (rows_.empty()) return row;
+    RequireMore("timestamp_ns", row.timestamp_ns, rows_.back().timestamp_ns);
+    RequireMore("frame", row.index, rows_.back().index);
+    return row;
+  }
+  void RequireMore(const char* name, std::int64_t value, std::int64_t before) const {
+    if (value > before) return;
+    table_.Fail(std::string(name) + " " + std::to_string(value),
+                "more than the line before (" + std::to_string(before) + ")");
+  }
+
+  Table table_;
+  const int frame_ = table_.Column("frame"), time_ = table_.Column("timestamp_ns");
+  const int exposure_ = table_.Column("exposure_us"), pair_ = table_.Column("pair");
+  std::int64_t last_pair_ = -1;
+  std::vector<FrameInfo> rows_;
+};
+
 }  // namespace
 
 std::string TimestampsRow(const FrameInfo& frame) {
@@ -116,32 +165,7 @@ std::string TimestampsRow(const FrameInfo& frame) {
 }
 
 std::vector<FrameInfo> ReadTimestamps(const std::filesystem::path& file) {
-  Table table(file);
-  const int frame = table.Column("frame");
-  const int time = table.Column("timestamp_ns");
-  const int exposure = table.Column("exposure_us");
-  const int pair = table.Column("pair");
-  std::int64_t last_pair = -1;
-  if (frame < 0) table.Fail("no column 'frame'", "frame,timestamp_ns[,exposure_us]");
-  if (time < 0) table.Fail("no column 'timestamp_ns'", "frame,timestamp_ns[,exposure_us]");
-  std::vector<FrameInfo> rows;
-  while (table.NextLine()) {
-    FrameInfo row{table.Number<std::int64_t>(frame), table.Number<std::int64_t>(time), 0};
-    if (exposure >= 0 && !table.IsBlank(exposure)) row.exposure_us = ReadExposure(table, exposure);
-    if (pair >= 0) row.pair = ReadPair(table, pair, last_pair);
-    if (row.index < 0) table.Fail("frame " + std::to_string(row.index), "0 or more");
-    if (!rows.empty() && row.timestamp_ns <= rows.back().timestamp_ns) {
-      table.Fail("timestamp_ns " + std::to_string(row.timestamp_ns),
-                 "more than the line before (" + std::to_string(rows.back().timestamp_ns) + ")");
-    }
-    if (!rows.empty() && row.index <= rows.back().index) {
-      table.Fail("frame " + std::to_string(row.index),
-                 "more than the line before (" + std::to_string(rows.back().index) + ")");
-    }
-    rows.push_back(row);
-  }
-  if (rows.empty()) table.Fail("no rows", "a row a frame");
-  return rows;
+  return RowReader(file).ReadAll();
 }
 
 }  // namespace stereomotion

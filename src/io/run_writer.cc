@@ -4,10 +4,10 @@
 #include <array>
 #include <system_error>
 
+#include "stereomotion/core/output_error.h"
 #include "stereomotion/core/user_error.h"
 #include "stereomotion/io/body_folder.h"
 #include "stereomotion/io/csv_rows.h"
-#include "stereomotion/core/output_error.h"
 
 namespace stereomotion {
 namespace {
@@ -48,13 +48,15 @@ void RemoveRun(const fs::path& folder) {
       joints.push_back(entry.path());
     }
   }
-  if (!fs::exists(folder / "run.json", ignored)) return;
+  const fs::path record = folder / "run.json";
+  if (!fs::exists(record, ignored)) return;
   for (const fs::path& joint : joints) fs::remove(joint, ignored);
   RemoveFilesOfRun(folder);
   for (const fs::path& body : folders_of_bodies) {
     RemoveFilesOfRun(body);
     fs::remove(body, ignored);  // where nothing else is in it
   }
+  fs::remove(record, ignored);  // last: a run that is half removed is still known as one
 }
 
 std::string Line(std::string_view text) { return std::string(text) + "\n"; }
@@ -69,17 +71,21 @@ struct Rows {
 
 }  // namespace
 
-void PrepareRunFolder(const fs::path& folder, bool overwrite) {
+void CheckRunFolder(const fs::path& folder, bool overwrite) {
   std::error_code error;
   if (fs::exists(folder, error) && !fs::is_directory(folder, error)) {
     throw UserError(folder.string() + ": is a file, expected a folder for the results (--output)");
   }
-  const bool used = fs::exists(folder, error) && !fs::is_empty(folder, error);
+  const bool used = fs::is_directory(folder, error) && !fs::is_empty(folder, error);
   if (used && !overwrite) {
     throw UserError(folder.string() +
                     ": exists and is not empty; give --force to overwrite, or another --output");
   }
-  if (used) RemoveRun(folder);
+}
+
+void PrepareRunFolder(const fs::path& folder, bool overwrite) {
+  CheckRunFolder(folder, overwrite);
+  RemoveRun(folder);
   MakeFolder(folder);
 }
 

@@ -13,43 +13,68 @@
 namespace stereomotion {
 namespace {
 
-/// Pairs are looked through for readable ones up to this many times the number wanted.
-constexpr int kSearchFactor = 4;
 /// Pixels held at once for learning: large images need fewer pairs, having more background each.
 constexpr std::int64_t kMostPixels = 64 << 20;
 
-/// Reads the first readable pairs, a batch at a time in parallel.
-std::vector<FramePair> ReadFirstPairs(const PairSource& source, const RigCamera& left,
-                                      const RigCamera& right, std::int64_t first, std::int64_t end,
-                                      int wanted) {
-  std::vector<FramePair> pairs;
-  const std::int64_t last =
-      std::min(end, first + std::min(std::int64_t{kSearchFactor} * wanted, kPairsKept));
-  for (std::int64_t position = first; position < last && static_cast<int>(pairs.size()) < wanted;) {
-    const std::int64_t batch =
-        std::min(last - position, std::int64_t{wanted} - static_cast<int>(pairs.size()));
-    std::vector<std::future<std::optional<FramePair>>> reading;
-    for (std::int64_t i = 0; i < batch; ++i) {
-      reading.push_back(std::async(std::launch::async, [&source, at = position + i] {
-        std::optional<FramePair> pair(std::in_place);
-        if (!source.Read(at, *pair)) pair.reset();
-        return pair;
-      }));
-    }
-    for (auto& read : reading) {
-      std::optional<FramePair> pair = read.get();
-      if (!pair) continue;  // an endless source has ended; what follows comes to nothing at once
-      if (HasSizeOf(left, pair->left) || HasSizeOf(right, pair->right))
-        pairs.push_back(std::move(*pair));
-    }
-    position += batch;
+/// The first images of one camera.
+struct FirstImages {
+  explicit FirstImages(const RigCamera& of) : camera(of) {}
+  /// Takes it where it is wanted. A camera often begins some images after the other one.
+  void Take(Frame& frame, int wanted) {
+    if (MissingOf(wanted) > 0 && HasSizeOf(camera, frame)) images.push_back(std::move(frame.image));
   }
+  [[nodiscard]] int MissingOf(int wanted) const {
+    return camera.noise ? 0 : wanted - static_cast<int>(images.size());
+  }
+  const RigCamera& camera;
+  std::vector<Image> images;
+};
+
+/// Holds what is learned from: the same of a recording as of the cameras while it was recorded.
+struct FirstLook {
+  FirstImages left, right;
+  bool has_pair = false;   ///< images of both cameras
+  bool has_ended = false;  ///< an endless source did, meanwhile
+};
+
+std::vector<std::optional<FramePair>> ReadTogether(const PairSource& source, std::int64_t first,
+                                                   std::int64_t count) {
+  std::vector<std::future<std::optional<FramePair>>> reading;
+  for (std::int64_t i = 0; i < count; ++i) {
+    reading.push_back(std::async(std::launch::async, [&source, at = first + i] {
+      std::optional<FramePair> pair(std::in_place);
+      if (!source.Read(at, *pair)) pair.reset();
+      return pair;
+    }));
+  }
+  std::vector<std::optional<FramePair>> pairs;
+  for (auto& read : reading) pairs.push_back(read.get());
   return pairs;
 }
 
-NoiseRecord Settle(const RigCamera& camera, const std::vector<ImageView>& images,
-                   const DetectionOptions& detection) {
-  if (camera.noise) return {*camera.noise, "rig", 0};
+/// Reads until there are so many images of each camera, through `kPairsKept` pairs at most.
+void ReadFirstImages(const PairSource& source, std::int64_t first, std::int64_t end, int wanted,
+                     FirstLook& look) {
+  const std::int64_t last = end - first > kPairsKept ? first + kPairsKept : end;
+  for (std::int64_t position = first; position < last && !look.has_ended;) {
+    const int missing = std::max(look.left.MissingOf(wanted), look.right.MissingOf(wanted));
+    if (missing <= 0) return;
+    const std::int64_t batch = std::min<std::int64_t>(last - position, missing);
+    for (std::optional<FramePair>& pair : ReadTogether(source, position, batch)) {
+      look.has_ended = look.has_ended || !pair;
+      if (!pair) continue;
+      look.has_pair = look.has_pair || (!pair->left.image.empty() && !pair->right.image.empty());
+      look.left.Take(pair->left, wanted);
+      look.right.Take(pair->right, wanted);
+    }
+    position += batch;
+  }
+}
+
+NoiseRecord Settle(const FirstImages& first, const DetectionOptions& detection) {
+  if (first.camera.noise) return {*first.camera.noise, "rig", 0};
+  std::vector<ImageView> images;
+  for (const Image& image : first.images) images.push_back(image.View());
   if (const auto learned = EstimateNoise(images, detection)) {
     return {*learned, "learned", static_cast<int>(images.size())};
   }
@@ -62,14 +87,15 @@ NoiseRecord Settle(const RigCamera& camera, const std::vector<ImageView>& images
   return record;
 }
 
-void WarnOfDefault(const RigCamera& camera, const NoiseRecord& record, RunSummary& summary) {
+void WarnOfDefault(const RigCamera& camera, const NoiseRecord& record, bool is_endless,
+                   RunSummary& summary) {
   if (record.origin != "default") return;
   summary.warnings.push_back(
       "camera '" + camera.name +
       "': its noise could not be learned (too few ball pixels in the first frames); a default is "
       "used, so the covariances are only rough. Give `noise:` in the rig file, or start where "
-      "balls "
-      "are seen (--start)");
+      "balls are seen" +
+      (is_endless ? "" : " (--start)"));
 }
 
 int PairsWanted(const RigCamera& left, int wanted) {
@@ -85,23 +111,16 @@ void LearnNoise(const PairSource& source, const MeasureSetup& setup, const Measu
                 std::int64_t end, RunSummary& summary) {
   const RigCamera& left = setup.rig.cameras[static_cast<std::size_t>(setup.left_camera)];
   const RigCamera& right = setup.rig.cameras[static_cast<std::size_t>(setup.right_camera)];
-  std::vector<FramePair> pairs;
-  if (!left.noise || !right.noise) {
-    pairs = ReadFirstPairs(source, left, right, options.first, end,
-                           PairsWanted(left, options.noise_pairs));
-  }
-  std::vector<ImageView> left_images;
-  std::vector<ImageView> right_images;
-  for (const FramePair& pair : pairs) {
-    if (HasSizeOf(left, pair.left)) left_images.push_back(pair.left.image.View());
-    if (HasSizeOf(right, pair.right)) right_images.push_back(pair.right.image.View());
-  }
+  FirstLook look{FirstImages(left), FirstImages(right)};
+  ReadFirstImages(source, options.first, end, PairsWanted(left, options.noise_pairs), look);
   auto settled_left =
-      std::async(std::launch::async, [&] { return Settle(left, left_images, options.detection); });
-  summary.noise_right = Settle(right, right_images, options.detection);
+      std::async(std::launch::async, [&] { return Settle(look.left, options.detection); });
+  summary.noise_right = Settle(look.right, options.detection);
   summary.noise_left = settled_left.get();
-  WarnOfDefault(left, summary.noise_left, summary);
-  WarnOfDefault(right, summary.noise_right, summary);
+  if (look.has_ended && !look.has_pair) return;  // stopped before anything could be measured
+  const bool is_endless = source.size() == kEndlessSource;
+  WarnOfDefault(left, summary.noise_left, is_endless, summary);
+  WarnOfDefault(right, summary.noise_right, is_endless, summary);
 }
 
 }  // namespace stereomotion

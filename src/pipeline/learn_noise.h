@@ -6,7 +6,7 @@
 namespace stereomotion {
 
 /// Settles both cameras' noise models before the run: from the rig file where it gives them, else
-/// learned from the first readable pairs and frozen, else a default with a warning.
+/// learned from each camera's first readable images and frozen, else a default with a warning.
 void LearnNoise(const PairSource& source, const MeasureSetup& setup, const MeasureOptions& options,
                 std::int64_t end, RunSummary& summary);
 

@@ -151,7 +151,7 @@ class Check(FolderCase):
         shutil.copytree(self.base / "good" / "cam0", self.base / "swapped" / "cam1")
         found = self.body("swapped", code=1)
         self.assertEqual(found["body"]["verdict"], "mend")
-        self.assertIn("exchanged", found["body"]["advice"])
+        self.assertIn("the cameras are swapped", found["body"]["advice"])
 
     def shifted(self, name, times):
         """A copy whose right images have other times."""

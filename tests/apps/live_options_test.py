@@ -52,9 +52,43 @@ class LiveOptions(FolderCase):
         for word in words:
             self.assertIn(word, made.stderr)
 
+    def test_record_without_a_live_camera(self):
+        for left, right, words in (
+                ("cam9", "aravis:2", ("--left cam9", "neither a camera of", "nor a folder")),
+                ("aravis:1", "127.0.0.1", ("--right 127.0.0.1", "neither a camera of")),
+                ("rec/cam0", "aravis:2", ("--left rec/cam0", "recorded already"))):
+            made = run("record", "--left", left, "--right", right, "--output", "no.h5",
+                       cwd=self.base)
+            self.assertEqual(made.returncode, 2, made.stderr)
+            for word in words:
+                self.assertIn(word, made.stderr)
+
+    def test_record_with_options_of_another_task(self):
+        for arguments in (("--repair", "rec.h5", "--output", "no.h5"),
+                          ("--repair", "rec.h5", "--left", "aravis:1"),
+                          ("--repair", "rec.h5", "--duration", 3),
+                          ("--export", "rec.h5", "--output", "no", "--count", 3),
+                          ("--left", "aravis:1", "--right", "aravis:2", "--output", "no",
+                           "--image-format", "tif")):
+            made = run("record", *arguments, cwd=self.base)
+            self.assertEqual(made.returncode, 2, made.stderr)
+            self.assertIn(arguments[-2], made.stderr)
+
     def test_one_live_one_recorded(self):
         self.refused("--left", "aravis:1", "--right", "rec/cam1",
                      words=["aravis:1", "rec/cam1", "one is a live camera"])
+
+    def test_set_for_a_side_that_there_is_not(self):
+        self.refused("--left", "aravis:127.0.0.1", "--right", "aravis:127.0.0.2", "--set",
+                     "middle:x=3", words=["--set", "'middle'", "left:", "right:"])
+
+    def test_recording_where_it_cannot_be_meant(self):
+        live = ("--left", "aravis:1", "--right", "aravis:2")
+        for place, words in (("h10.h5:cam0", ["both cameras go into it"]), (".h5", ["a name"]),
+                             ("refused/", ["--record and --output", "two places"])):
+            self.refused(*live, "--record", place, words=["--record", place, *words])
+        (self.base / "old.H5").write_text("precious")
+        self.refused(*live, "--record", "old.H5", words=["old.H5: exists", "--force"])
 
     def test_one_camera_twice(self):
         self.refused("--left", "aravis:1", "--right", "aravis:1", words=["aravis:1", "two cameras"])

@@ -158,6 +158,19 @@ class Stream(StreamCase):
         self.assertEqual(process.returncode, 0, error)
         self.assertEqual(len(rows(self.base / "away" / "poses.csv")), FRAMES)
 
+    def test_port_in_use_leaves_the_run_before(self):
+        self.assertEqual(self.track("--output", "kept").returncode, 0)
+        before = {file: file.read_bytes() for file in (self.base / "kept").iterdir()}
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            address = f"tcp://127.0.0.1:{taken.getsockname()[1]}"
+            refused = self.track("--output", "kept", "--stream", address)
+        self.assertEqual(refused.returncode, 3, refused.stderr)
+        self.assertIn("cannot listen there", refused.stderr)
+        self.assertEqual(before, {file: file.read_bytes()
+                                  for file in (self.base / "kept").iterdir()})
+
     def test_reader_of_standard_output_that_goes_away(self):
         process = subprocess.Popen(
             [small_recording.program, *self.arguments("--output", "gone", "--stream", "-")],
@@ -178,6 +191,15 @@ class StreamErrors(StreamCase):
         for word in (address, *words):
             self.assertIn(word, made.stderr)
         self.assertFalse((self.base / "refused" / "poses.csv").exists())
+
+    def test_client_says_what_it_cannot_read(self):
+        for text, words, more in (("hello", "expected lines of JSON", ()),
+                                  ("[1]", "expected lines of JSON", ()),
+                                  ("", "--every: found 0", ("--every", 0))):
+            client = subprocess.run([sys.executable, CLIENT, "-", *map(str, more)], text=True,
+                                    input=text + "\n", capture_output=True, check=False)
+            self.assertIn(words, client.stderr)
+            self.assertNotIn("Traceback", client.stderr)
 
     def test_addresses_that_are_none(self):
         for address in ("stdout", "tcp://127.0.0.1", "tcp://:5555", "tcp://127.0.0.1:port",

@@ -114,6 +114,40 @@ TEST(ClockFit, FollowsAClockThatWarmsUp) {
   EXPECT_NEAR(fit.line().slope, -20e-6, 2e-6);
 }
 
+TEST(ClockFit, ALoneEarlyArrivalIsLeftOut) {
+  for (const std::int64_t early_ms : {3, 50, 500}) {
+    const Source source;
+    ClockFit fit;
+    std::mt19937_64 random(11);
+    source.Feed(fit, 0, 600, random);
+    const std::int64_t at_ns = 600 * source.period_ns;
+    fit.Add(source.Device(at_ns), at_ns - early_ms * kMs);
+    for (std::int64_t k = 601; k < 60 * 30; k += 60) {
+      EXPECT_LT(std::abs(source.ErrorNs(fit, k)), 100'000) << k;
+      EXPECT_LT(fit.uncertainty_ns(), 300'000) << k;
+      source.Feed(fit, k, k + 60, random);
+    }
+  }
+}
+
+TEST(ClockFit, AShortestDelayThatRisesForGoodIsTakenOff) {
+  const Source source;
+  ClockFit fit;
+  std::mt19937_64 random(13);
+  const auto feed_late = [&](std::int64_t from, std::int64_t to, std::int64_t late_ns) {
+    for (std::int64_t k = from; k < to; ++k) {
+      const std::int64_t at_ns = k * source.period_ns;
+      fit.Add(source.Device(at_ns),
+              at_ns + late_ns + static_cast<std::int64_t>(random() % 300'000));
+      if (k % 60 != 0) continue;
+      EXPECT_LT(std::abs(source.ErrorNs(fit, k)), 200'000) << k;
+    }
+  };
+  source.Feed(fit, 0, 60 * 30, random);
+  feed_late(60 * 30, 60 * 200, 17 * kMs);
+  feed_late(60 * 200, 60 * 300, 0);  // and it may fall again
+}
+
 TEST(ClockFit, ResetForgets) {
   Source source;
   ClockFit fit;

@@ -27,7 +27,8 @@ class FakeCamera : public CameraDevice {
     bool comes_back = true;           ///< after an outage
     std::int64_t mute_after_ns = -1;  ///< true time from which it answers but sends no image
     std::atomic<int>* triggers = nullptr;
-    std::atomic<int>* opened = nullptr;  ///< counts `Reopen`
+    std::vector<Clock::time_point>* triggered = nullptr;  ///< when; one camera's own
+    std::atomic<int>* opened = nullptr;                   ///< counts `Reopen`
   };
 
   FakeCamera(Options options, std::vector<SimulatedFrame> frames)
@@ -47,6 +48,7 @@ class FakeCamera : public CameraDevice {
   void Stop() override {}
   void Trigger() override {
     if (options_.triggers != nullptr) ++*options_.triggers;
+    if (options_.triggered != nullptr) options_.triggered->push_back(Clock::now());
   }
 
   DeviceEvent Next(std::chrono::milliseconds at_most, DeviceFrame& frame) override {

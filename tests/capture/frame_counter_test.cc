@@ -70,7 +70,29 @@ TEST(DeviceClock, AStepBackIsTold) {
   EXPECT_FALSE(clock.Next(1'000'000, ns));
   EXPECT_EQ(ns, 1'000'000);
   EXPECT_TRUE(clock.Next(2'000'000, ns));
-  EXPECT_FALSE(clock.Next(2'000'000, ns)) << "time stands still";
+}
+
+TEST(DeviceClock, TimeThatStandsStillIsNoOtherClock) {
+  DeviceClock clock(1'000'000'000);
+  std::int64_t ns = 0;
+  constexpr std::int64_t kWrapped = 4'294'967'296;
+  EXPECT_TRUE(clock.Next(4'294'000'000, ns));
+  EXPECT_TRUE(clock.Next(1'000'000, ns));
+  for (const std::int64_t frozen : {1'000'000, 1'000'000, 999'999, 500'000, 1}) {
+    EXPECT_TRUE(clock.Next(frozen, ns));
+    EXPECT_EQ(ns, kWrapped + frozen) << "as it is, so that it is seen not to rise";
+  }
+  EXPECT_TRUE(clock.Next(20'000'000, ns));
+  EXPECT_EQ(ns, kWrapped + 20'000'000);
+}
+
+TEST(DeviceClock, ManySmallStepsBackAreOneGreatOne) {
+  DeviceClock clock;
+  std::int64_t ns = 0;
+  EXPECT_TRUE(clock.Next(90'000'000, ns));
+  EXPECT_TRUE(clock.Next(89'500'000, ns));
+  EXPECT_TRUE(clock.Next(89'000'000, ns));
+  EXPECT_FALSE(clock.Next(88'500'000, ns));
 }
 
 }  // namespace

@@ -33,21 +33,47 @@ std::unique_ptr<Recording> Open(const std::filesystem::path& file) {
 TEST(H5Damage, NoHdf5File) {
   TemporaryFolder folder;
   const auto file = folder.Write("text.h5", "This is no HDF5 file.");
-  EXPECT_NE(Message([&] { Open(file); }).find(": cannot be read as an HDF5 file ("),
-            std::string::npos);
+  const std::string text = Message([&] { Open(file); });
+  EXPECT_NE(text.find(": cannot be read as an HDF5 file ("), std::string::npos) << text;
+  EXPECT_EQ(text.find("HDF5 does not say why"), std::string::npos) << text;
   EXPECT_EQ(Message([&] { Open(folder.path() / "none.h5"); }),
             (folder.path() / "none.h5").string() + ": no such file");
 }
 
-TEST(H5Damage, MissingSegmentIsNamed) {
+TEST(H5Damage, MissingSegmentCostsOnlyItsOwnImages) {
   TemporaryFolder folder;
   const auto file = folder.path() / "rec.h5";
   const auto recorder = StartRecorder({file});
   testing::RecordPairs(*recorder, 0, 50);
   recorder->Finish();
-  const auto segment = folder.path() / "rec.h5.segments" / "000001.h5";
-  std::filesystem::remove(segment);
-  EXPECT_EQ(Message([&] { Open(file); }), segment.string() + ": no such file");
+  const auto segment = folder.path() / "rec.h5.segments" / "000000.h5";
+  const auto saved = folder.path() / "saved.h5";
+  std::filesystem::rename(segment, saved);
+  const std::string missing = " images are missing; the first: " + segment.string() + ": no such";
+  const auto recording = Open(file);
+  ASSERT_FALSE(recording->report().warnings.empty());
+  EXPECT_NE(recording->report().warnings.front().find(missing), std::string::npos);
+  EXPECT_EQ(recording->report().pairs, 50);
+  FramePair pair;
+  recording->Read(0, pair);
+  EXPECT_NE(pair.right.problem.find(segment.string() + ": no such file"), std::string::npos);
+  recording->Read(49, pair);
+  EXPECT_TRUE(testing::SameImage(pair.left.image.View(), testing::MakeFrame(0, 49)->image.View()));
+  // A repair tells of it and takes nothing away: the segment may come back.
+  EXPECT_NE(RepairRecording(file).notes.at(1).find(missing), std::string::npos);
+  std::filesystem::rename(saved, segment);
+  Open(file)->Read(0, pair);
+  EXPECT_EQ(pair.right.problem, "");
+}
+
+TEST(H5Damage, RecordingWithoutAnySegmentIsRefused) {
+  TemporaryFolder folder;
+  const auto file = folder.path() / "rec.h5";
+  const auto recorder = StartRecorder({file});
+  testing::RecordPairs(*recorder, 0, 5);
+  recorder->Finish();
+  std::filesystem::remove_all(folder.path() / "rec.h5.segments");
+  EXPECT_NE(Message([&] { Open(file); }).find("000000.h5: no such file"), std::string::npos);
 }
 
 // Every image is read or said to be unreadable; nothing crashes.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "matcher_run.h"
 
@@ -157,6 +158,86 @@ TEST(FrameMatcher, DelaysThatShortenShowThatTheClocksWereMisjudged) {
   EXPECT_GE(outcome.summary.given_up, 1);
   EXPECT_LT(outcome.last_wrong_ns, 3 * kSecond + 100 * kMs);
   EXPECT_GT(outcome.pairs, outcome.possible - 30);
+}
+
+TEST(FrameMatcher, ADelayThatRisesForGoodIsNoOffsetOfTheClocks) {
+  std::uint32_t seed = 0;
+  for (const double rate_hz : {60.0, 200.0}) {
+    for (const double periods : {-1.2, 0.3, 1.0, 1.2, 2.0}) {
+      for (const std::int64_t until_s : {150, 999}) {
+        Scene scene = Offset(rate_hz);
+        scene.seconds = 200;
+        scene.cameras[0].drift = 20e-6;
+        const auto by_ns = static_cast<std::int64_t>(std::abs(periods) * 1e9 / rate_hz);
+        scene.cameras[periods > 0 ? 1 : 0].detours.push_back(
+            {20 * kSecond, until_s * kSecond, by_ns});
+        const Outcome outcome = Match(scene, ++seed);
+        SCOPED_TRACE(std::to_string(rate_hz) + " Hz, " + std::to_string(periods));
+        ExpectRight(outcome, 10);
+      }
+    }
+  }
+}
+
+TEST(FrameMatcher, OneImageThatTheHostDatesTooEarlyCostsNothing) {
+  for (const std::int64_t by_ms : {3, 8, 12}) {
+    Scene scene = Offset();
+    scene.cameras[0].early_at_ns = 5 * kSecond;
+    scene.cameras[0].early_by_ns = by_ms * kMs;
+    scene.seconds = 60;
+    const Outcome outcome = Match(scene, 2);
+    ExpectRight(outcome, 1);
+    EXPECT_EQ(outcome.summary.given_up, 0) << by_ms;
+  }
+}
+
+TEST(FrameMatcher, OneClockThatIsNotIsSeenFromTensOfMilliseconds) {
+  for (const std::int64_t periods : {-30, -10, -4, 4, 10, 30}) {
+    Scene scene;
+    scene.shared = true;
+    scene.cameras[1].clock_ns = periods * kPeriod;
+    const Outcome outcome = Match(scene, 1);
+    ExpectRight(outcome, 0);
+    EXPECT_EQ(outcome.relation, ClockRelation::kEstimated);
+  }
+}
+
+TEST(FrameMatcher, OneClockThatIsSetInOneCameraAlone) {
+  for (const std::int64_t periods : {-10, -2, -1, 1, 2, 10, 30}) {
+    Scene scene;
+    scene.shared = true;
+    scene.cameras[1].clock_steps.push_back({4 * kSecond, periods * kPeriod});
+    const Outcome outcome = Match(scene, 1);
+    EXPECT_EQ(outcome.worst_ns, 0) << periods;
+  }
+}
+
+TEST(NumberRule, StandsWhereClocksAndNumbersGoOnAsEver) {
+  constexpr std::int64_t kStep = 1000;
+  NumberRule rule;
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(rule.Judge(7, 20, kStep), NumberRule::Verdict::kKeeps);
+  }
+  EXPECT_EQ(rule.Judge(8, 20 + kStep, kStep), NumberRule::Verdict::kFirstDoubt);
+  for (int i = 0; i < 100; ++i) {  // also where the clocks drift meanwhile
+    EXPECT_EQ(rule.Judge(8, 20 + kStep + 10 * i, kStep), NumberRule::Verdict::kDoubt);
+  }
+  EXPECT_EQ(rule.Judge(7, 1020, kStep), NumberRule::Verdict::kKeeps);
+}
+
+TEST(NumberRule, ChangesWhereANumberIsMissingOrThePairsWereMisjudged) {
+  constexpr std::int64_t kStep = 1000;
+  for (const bool misjudged : {false, true}) {
+    NumberRule rule;
+    for (int i = 0; i < 100; ++i) rule.Judge(7, 20, kStep);
+    if (misjudged) rule.Loosen();
+    const std::int64_t apart_ns = misjudged ? 20 + kStep : 20;
+    EXPECT_EQ(rule.Judge(8, apart_ns, kStep), NumberRule::Verdict::kFirstDoubt);
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_EQ(rule.Judge(8, apart_ns, kStep), NumberRule::Verdict::kDoubt);
+    }
+    EXPECT_EQ(rule.Judge(8, apart_ns, kStep), NumberRule::Verdict::kKeeps);
+  }
 }
 
 /// A camera with faults of every kind; its shortest delay is a share of the period up to `delay`.

@@ -60,10 +60,13 @@ struct Scene {
     for (SimulatedCamera& camera : cameras) camera.period_ns = 1e9 / kRateHz;
     cameras[1].clock_ns = 4000 * kSecond;
   }
+  std::array<std::vector<Clock::time_point>, 2> triggered;
+
   std::unique_ptr<LivePairs> Open(FrameTap* tap = nullptr) {
     std::array<std::unique_ptr<CameraDevice>, 2> devices;
     device.zero = Clock::now() + std::chrono::milliseconds(20);
     for (int i = 0; i < 2; ++i) {
+      device.triggered = &triggered[static_cast<std::size_t>(i)];
       device.uri = i == 0 ? "fake:left" : "fake:right";
       auto frames = Simulate(cameras[static_cast<std::size_t>(i)], i, seconds, 1);
       devices[static_cast<std::size_t>(i)] =
@@ -290,6 +293,28 @@ TEST(LivePairs, SendsTriggersToBoth) {
   ReadAll(*live);
   EXPECT_GT(triggers, 30);  // 50 each; a busy machine misses some
   EXPECT_LE(triggers, 2 * 56);
+}
+
+TEST(LivePairs, TriggersGoOutTogetherAgainAfterAnOutage) {
+  using std::chrono::milliseconds;
+  Scene scene;
+  scene.seconds = 2;
+  scene.cameras[1].outages.push_back({330 * kMs, 150 * kMs, 0});
+  scene.options.trigger_hz = 10;
+  scene.options.duration_s = 1.6;
+  const auto live = scene.Open();
+  live->Start();
+  ReadAll(*live);
+  const auto &left = scene.triggered[0], &right = scene.triggered[1];
+  ASSERT_GT(left.size(), 10U);
+  ASSERT_GT(right.size(), 5U);
+  Clock::duration nearest = milliseconds(100);
+  for (std::size_t i = 1; i <= 5; ++i) {  // a busy machine delays some
+    auto apart = (right[right.size() - i] - left[left.size() - i]) % milliseconds(100);
+    if (apart < Clock::duration(0)) apart += milliseconds(100);
+    nearest = std::min({nearest, apart, milliseconds(100) - apart});
+  }
+  EXPECT_LT(nearest, milliseconds(20));
 }
 
 TEST(LivePairs, AFrameCostsNoAllocation) {

@@ -109,7 +109,9 @@ TEST(Recorder, MovedRecordingIsReadable) {
 TEST(Recorder, ExistingRecordingIsKept) {
   TemporaryFolder folder;
   const auto file = folder.path() / "rec.h5";
-  StartRecorder({file})->Finish();
+  const auto first = StartRecorder({file});
+  RecordPairs(*first, 0, 1);
+  first->Finish();
   EXPECT_EQ(Message([&] { StartRecorder({file}); }),
             file.string() + ": exists; give another --output, or --force to replace the recording");
   RecorderOptions options{file};
@@ -162,6 +164,8 @@ TEST(RecordingArgument, IsSplit) {
   EXPECT_EQ(camera, "cam0");
   EXPECT_TRUE(SplitRecordingArgument("rec.hdf5", file, camera));
   EXPECT_EQ(camera, "");
+  EXPECT_TRUE(SplitRecordingArgument("REC.H5:cam0", file, camera));
+  EXPECT_EQ(file, "REC.H5");
   EXPECT_FALSE(SplitRecordingArgument("aravis:rec", file, camera));
   EXPECT_FALSE(SplitRecordingArgument("rec/cam0", file, camera));
 }

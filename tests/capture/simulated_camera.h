@@ -41,6 +41,11 @@ struct ClockStep {
   std::int64_t at_ns = 0, by_ns = 0;
 };
 
+/// A time in which all images arrive later by so much.
+struct Detour {
+  std::int64_t from_ns = 0, until_ns = 0, by_ns = 0;
+};
+
 struct SimulatedCamera {
   double period_ns = 16'666'667;
   std::int64_t phase_ns = 0;  ///< of its images against true time; triggered cameras have the same
@@ -53,7 +58,9 @@ struct SimulatedCamera {
   double lost = 0;                   ///< share of images that never arrive
   std::vector<Stall> stalls;
   std::vector<Outage> outages;
-  std::vector<Stall> silences;  ///< images taken then are lost
+  std::vector<Detour> detours;
+  std::int64_t early_at_ns = -1, early_by_ns = 0;  ///< the host misdates the first image after that
+  std::vector<Stall> silences;                     ///< images taken then are lost
   std::vector<ClockStep> clock_steps;
   std::int64_t late_by_ns = 0, late_until_ns = 0;  ///< all its images at first
   std::int64_t first_id = 0;
@@ -81,7 +88,7 @@ inline std::vector<SimulatedFrame> Simulate(const SimulatedCamera& camera, int n
   std::int64_t clock_ns = camera.clock_ns, id_base = -camera.first_id, last_host_ns = 0;
   std::size_t outage = 0;
   int epoch = 0;
-  bool forgot = false;
+  bool forgot = false, was_early = false;
   for (std::int64_t k = 0;; ++k) {
     const std::int64_t at_ns =
         camera.phase_ns + static_cast<std::int64_t>(camera.period_ns * static_cast<double>(k));
@@ -113,12 +120,19 @@ inline std::vector<SimulatedFrame> Simulate(const SimulatedCamera& camera, int n
     std::int64_t set_ns = 0;
     for (const ClockStep& step : camera.clock_steps) set_ns += at_ns >= step.at_ns ? step.by_ns : 0;
     std::int64_t host_ns = at_ns + static_cast<std::int64_t>(delay_ns);
+    for (const Detour& way : camera.detours) {
+      host_ns += at_ns >= way.from_ns && at_ns < way.until_ns ? way.by_ns : 0;
+    }
     if (at_ns < camera.late_until_ns) host_ns += camera.late_by_ns;
     for (const Stall& stall : camera.stalls) {
       if (host_ns >= stall.from_ns) host_ns = std::max(host_ns, stall.from_ns + stall.for_ns);
     }
     host_ns = std::max(host_ns, last_host_ns + 1000);
     last_host_ns = host_ns;
+    if (camera.early_at_ns >= 0 && at_ns >= camera.early_at_ns && !was_early) {
+      was_early = true;
+      host_ns -= camera.early_by_ns;
+    }
     const std::int64_t stamped_ns = camera.stamps_arrival ? host_ns : at_ns;
     const double device_ns = static_cast<double>(stamped_ns) * (1 + camera.drift) + stamp_ns;
     frames.push_back({number, at_ns, k - id_base,

@@ -88,6 +88,15 @@ TEST_F(V4l2StreamTest, ErrorFlagsAndShortImagesAreNeverMeasured) {
   EXPECT_EQ(camera->counts().lost, 4);
 }
 
+TEST_F(V4l2StreamTest, ManyKindsOfShortImagesAreOneWarning) {
+  const auto camera = Run();
+  for (std::uint32_t i = 0; i < 31; ++i) {
+    Arrive(i, 0, i);
+    ASSERT_EQ(Next(camera), DeviceEvent::kIncomplete);
+  }
+  EXPECT_TRUE(Say(camera->warnings(), {"fewer than the 32 bytes that 8 × 4 pixels need"}));
+}
+
 TEST_F(V4l2StreamTest, DamagedImagesGiveTheirBuffersBack) {
   const auto camera = Run();
   for (std::uint32_t i = 0; i < 50; ++i) {

@@ -12,9 +12,9 @@
 #include <sstream>
 
 #include "io_test_support.h"
+#include "stereomotion/core/output_error.h"
 #include "stereomotion/io/body_folder.h"
 #include "stereomotion/io/csv_rows.h"
-#include "stereomotion/core/output_error.h"
 #include "stereomotion/io/suggest.h"
 #include "stereomotion/pose/status_words.h"
 
@@ -298,6 +298,19 @@ TEST(RunWriter, OverwritingRemovesTheRunBefore) {
   EXPECT_FALSE(std::filesystem::exists(run / "shank/poses.csv"));
   EXPECT_EQ(Content(run / "shank/notes.txt"), "x");
   EXPECT_TRUE(std::filesystem::exists(run / "poses.csv"));
+}
+
+TEST(CheckRunFolder, ChangesNothing) {
+  TemporaryFolder folder;
+  const auto run = folder.path() / "run";
+  { RunWriter writer(run, {{OneRod()}, "l", "r"}, false, Record()); }
+  EXPECT_THROW(CheckRunFolder(run, false), UserError);
+  CheckRunFolder(run, true);
+  EXPECT_TRUE(std::filesystem::exists(run / "poses.csv"));
+  CheckRunFolder(folder.path() / "new", false);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "new"));
+  PrepareRunFolder(run, true);
+  EXPECT_TRUE(std::filesystem::is_empty(run)) << "no run.json that says `done` without files";
 }
 
 TEST(BodyNames, FitForFolders) {

@@ -36,6 +36,7 @@ TEST_F(AravisFaults, ServerKilledIsNoticedAndFoundAgain) {
   server->Kill();
   ASSERT_TRUE(WaitFor(*camera, DeviceEvent::kLost, frame));
   EXPECT_NE(camera->Reopen(), "");
+  EXPECT_EQ(camera->info().serial, "LEFT") << "who is lost is still known";
   EXPECT_EQ(camera->Next(milliseconds(10), frame), DeviceEvent::kLost);
   server = Serve(OneCamera({"--clock-from-start"}));
   std::string why = "not tried";
@@ -49,9 +50,11 @@ TEST_F(AravisFaults, ServerKilledIsNoticedAndFoundAgain) {
   EXPECT_EQ(camera->counts().reopened, 1);
 }
 
-TEST_F(AravisFaults, AnotherCameraAtTheSameAddressIsNotTaken) {
+TEST_F(AravisFaults, AnotherCameraAtTheSameAddressIsNeitherTakenNorSet) {
   auto server = Serve(OneCamera({}));
-  const auto camera = OpenCamera("aravis:127.0.0.1", {});
+  CameraSettings settings;
+  settings.exposure_us = 3000;
+  const auto camera = OpenCamera("aravis:127.0.0.1", settings);
   camera->Start();
   DeviceFrame frame;
   ASSERT_TRUE(WaitFor(*camera, DeviceEvent::kFrame, frame));
@@ -59,6 +62,11 @@ TEST_F(AravisFaults, AnotherCameraAtTheSameAddressIsNotTaken) {
   ASSERT_TRUE(WaitFor(*camera, DeviceEvent::kLost, frame));
   server = Serve({"--camera", "cam0", "--serial", "OTHER"});
   EXPECT_TRUE(Contains(camera->Reopen(), "another camera (Aravis-Fake-OTHER)"));
+  EXPECT_TRUE(Contains(camera->Reopen(), "another camera (Aravis-Fake-OTHER)"));
+  const auto other = OpenCamera("aravis:127.0.0.1", {});
+  other->Start();
+  ASSERT_TRUE(WaitFor(*other, DeviceEvent::kFrame, frame));
+  EXPECT_EQ(frame.exposure_us, 1000) << "as it was";
 }
 
 // A cut of a second is no loss: the camera keeps its program for 3 s.

@@ -118,6 +118,26 @@ class Record(LiveCase):
         self.assertEqual(result.returncode, 3, result.stderr)
         self.assertIn("aravis:127.0.0.1", result.stderr)
         self.assertFalse((self.dir / "rec.h5.segments").exists())
+        self.record("--count", 5, output="new/folder/rec.h5")
+        self.assertFalse((self.dir / "new").exists(), "nothing was recorded")
+
+    def test_full_disk_is_told(self):
+        """The cause, and how far it came; the record of it finds no room, either."""
+        (self.dir / "disk").mkdir()
+        script = 'mount -t tmpfs -o size=12m tmpfs disk || exit 99; mkdir -p disk/rec.h5.json/x; exec "$@"'
+        command = ["unshare", "-rm", "sh", "-c", script, "sh", small_recording.program, "record",
+                   "--left", LEFT, "--right", RIGHT, "--output", "disk/rec.h5"]
+        with self.server():
+            result = subprocess.run(command, cwd=self.dir, text=True, capture_output=True,
+                                    timeout=120, check=False)
+        if result.returncode == 99 or "unshare" in result.stderr:
+            self.skipTest("no small disk: unshare -rm and mount do not work here")
+        self.assertEqual(result.returncode, 3, result.stderr)
+        self.assertIn("No space left", result.stderr)
+        self.assertIn("the recording ended early", result.stderr)
+        self.assertNotIn("rec.h5.json", result.stderr)
+        self.assertNotIn("too slow", result.stderr)
+        self.assertIn("pairs recorded", result.stdout)
 
     def test_server_that_stops_leaves_what_was_before(self):
         with self.server("--frames", 60):

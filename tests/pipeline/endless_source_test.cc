@@ -165,11 +165,11 @@ TEST_F(EndlessSource, PromptSinkHearsOfEveryPairAndChangesNothing) {
 
 TEST_F(EndlessSource, PromptSinkHearsBeforeThePairsThatFollow) {
   ComingPairs source(Rendered());
-  source.LetCome(8);  // the noise is learned from eight
+  source.LetCome(9);  // the noise is learned from eight of each camera, and one has no partner
   std::atomic<std::int64_t> prompt_frame{-1};
   std::thread feeder([&] {
-    while (prompt_frame < 7) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    source.End();  // only now: a prompt sink that waited for pair 9 would never hear of 7
+    while (prompt_frame < 8) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    source.End();  // only now: a prompt sink that waited for pair 10 would never hear of 8
   });
   std::int64_t measured = 0;
   MeasureRecording(
@@ -179,7 +179,7 @@ TEST_F(EndlessSource, PromptSinkHearsBeforeThePairsThatFollow) {
         prompt_frame = pose.frame;
       });
   feeder.join();
-  EXPECT_EQ(measured, 8);
+  EXPECT_EQ(measured, 9);
 }
 
 }  // namespace

@@ -40,7 +40,8 @@ class FrameTap {
 /// camera's clock for both, going on across a reconnection; `Frame::index` the camera's own
 /// unwrapped number counted from its first frame on, likewise. A pair that waits too long for being
 /// measured is dropped, the oldest first: it is delivered without images, as `Frame::dropped`.
-/// Memory does not grow.
+/// Memory does not grow while pairs are read; while nothing reads, a dropped pair leaves about 120
+/// bytes (its times), 90 MB an hour at 200 Hz.
 class LivePairs : public PairSource {
  public:
   /// Takes over two opened cameras; `tap` may be null and must outlive the object.

@@ -38,6 +38,9 @@ class Recorder : public FrameTap {
   [[nodiscard]] virtual RecorderCounts counts() const = 0;
 };
 
+/// Tells whether a recording of that name is a file: ….h5 or ….hdf5, in whatever case.
+bool HasRecordingExtension(const std::filesystem::path& name);
+
 /// Starts a recording. Throws `UserError` where the output exists and is not to be overwritten,
 /// `OutputError` where it cannot be written.
 std::unique_ptr<Recorder> StartRecorder(const RecorderOptions& options);

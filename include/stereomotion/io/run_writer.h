@@ -19,6 +19,9 @@ struct RunNames {
   std::string right_camera;
 };
 
+/// Refuses a folder that `PrepareRunFolder` would refuse, and changes nothing. Throws `UserError`.
+void CheckRunFolder(const std::filesystem::path& folder, bool overwrite);
+
 /// Makes the folder for a RUN, or takes an empty one; of one that is used, with `overwrite` only,
 /// and takes away the results that a run before left there and in its bodies' folders; other files
 /// stay. Throws `UserError` where `folder` exists and is not empty and `overwrite` is not set,

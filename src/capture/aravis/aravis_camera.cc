@@ -38,13 +38,12 @@ class AravisCamera : public CameraDevice {
     Open(uri_.substr(std::string("aravis:").size()), kPatience);
     id_ = link_.id;
     serial_ = link_.info.serial;
-    address_ = link_.address;
   }
-  ~AravisCamera() override { closer_.Close(std::move(link_)); }
+  ~AravisCamera() override { CloseLink(std::move(link_)); }
   AravisCamera(const AravisCamera&) = delete;
   AravisCamera& operator=(const AravisCamera&) = delete;
   [[nodiscard]] const std::string& uri() const override { return uri_; }
-  [[nodiscard]] DeviceInfo info() const override { return link_.info; }
+  [[nodiscard]] DeviceInfo info() const override { return info_; }
   [[nodiscard]] std::string clock() const override {
     return settings_.ptp && link_.camera != nullptr ? PtpClockOf(link_.camera.get()) : "";
   }
@@ -67,7 +66,7 @@ class AravisCamera : public CameraDevice {
   std::string uri_;
   CameraSettings settings_;
   std::string id_, serial_, address_;
-  LinkCloser closer_;
+  DeviceInfo info_;  // the last one, also while the camera is lost
   CameraLink link_;
   FrameDelivery delivery_;
   steady_clock::time_point last_sign_;
@@ -78,7 +77,9 @@ class AravisCamera : public CameraDevice {
 
 void AravisCamera::Open(const std::string& name, milliseconds patience) {
   std::vector<std::string> warnings;
-  link_ = OpenLink(name, uri_, settings_, patience, warnings);
+  link_ = OpenLink(name, uri_, settings_, {patience, id_}, warnings);
+  info_ = link_.info;
+  address_ = link_.address;
   for (const std::string& warning : warnings) warnings_.Add(warning);
 }
 
@@ -101,7 +102,7 @@ void AravisCamera::Start() {
 
 void AravisCamera::Stop() {
   if (link_.camera == nullptr || link_.watch->lost()) return;
-  arv_camera_stop_acquisition(link_.camera.get(), nullptr);
+  if (!StopAcquisition(link_.camera.get())) CloseLink(std::exchange(link_, {}), false);
   EndStream();
 }
 
@@ -166,16 +167,10 @@ std::string AravisCamera::WhereToLook() {
 
 std::string AravisCamera::Reopen() {
   try {
-    closer_.Close(std::exchange(link_, {}));
+    CloseLink(std::exchange(link_, {}));
     delivery_.StreamEnds();
     Open(WhereToLook(), milliseconds(0));
-    if (link_.id != id_) {
-      const std::string why = uri_ + ": another camera (" + link_.id + ") answers at " + address_;
-      closer_.Close(std::exchange(link_, {}));
-      return why;
-    }
     Prepare();
-    address_ = link_.address;
   } catch (const DeviceError& error) {
     return error.what();
   }

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <future>
 #include <memory>
 #include <string>
 #include <vector>
@@ -22,14 +21,16 @@ class ControlWatch {
   ~ControlWatch();
   ControlWatch(const ControlWatch&) = delete;
   ControlWatch& operator=(const ControlWatch&) = delete;
-  [[nodiscard]] bool lost() const { return lost_; }
+  [[nodiscard]] bool lost() const { return *lost_; }
 
  private:
-  static void OnLost(ArvDevice* device, gpointer self);
+  using Flag = std::shared_ptr<std::atomic<bool>>;
+  static void OnLost(ArvDevice* device, gpointer flag);
+  static void Forget(gpointer flag, GClosure* closure);
 
   ArvDevice* device_;
   gulong handler_ = 0;
-  std::atomic<bool> lost_{false};
+  Flag lost_ = std::make_shared<std::atomic<bool>>(false);
 };
 
 /// An opened and set camera with its stream; what has to be made anew when it was lost.
@@ -46,19 +47,23 @@ struct CameraLink {
   std::string id, address;
 };
 
-/// Opens and sets a camera; adds to `warnings`. Throws `DeviceError`.
-CameraLink OpenLink(const std::string& name, const std::string& uri, const CameraSettings& settings,
-                    std::chrono::milliseconds patience, std::vector<std::string>& warnings);
-
-/// Lets go of cameras. One that does not answer any more is let go in the background: Aravis asks
-/// it politely several times, 8 s in all, and meanwhile it may be back. The destructor waits for
-/// that.
-class LinkCloser {
- public:
-  void Close(CameraLink link);
-
- private:
-  std::vector<std::future<void>> closing_;
+/// Says what a camera is waited for and which one it has to be.
+struct Expectation {
+  std::chrono::milliseconds patience{0};  ///< for another program to give it up
+  std::string id;                         ///< as of `DeviceIdOf`; empty: any
 };
+
+/// Opens and sets a camera; adds to `warnings`. Throws `DeviceError`, also where another camera
+/// answers than is expected: nothing is set in that one.
+CameraLink OpenLink(const std::string& name, const std::string& uri, const CameraSettings& settings,
+                    const Expectation& expected, std::vector<std::string>& warnings);
+
+/// Stops the images. False: the camera does not answer; let go of it then.
+bool StopAcquisition(ArvCamera* camera);
+
+/// Stops and lets go of a camera. Waits for that where the camera `answers`, but not for long: one
+/// that is dead Aravis asks politely several times, 15 s in all. That goes on in the background,
+/// because meanwhile the camera may be back, or the program is to end.
+void CloseLink(CameraLink link, bool answers = true);
 
 }  // namespace stereomotion

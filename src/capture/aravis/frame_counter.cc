@@ -45,6 +45,12 @@ DeviceClock::DeviceClock(std::uint64_t tick_hz) {
 
 bool DeviceClock::Next(std::int64_t device_ns, std::int64_t& unwrapped_ns) {
   const bool back = started_ && device_ns <= last_ns_;
+  // A bad time stamp, not another clock: whoever compares it with the one before drops the image.
+  constexpr std::int64_t kSetBackNs = 1'000'000;  // as of `CameraTimeline`
+  if (back && last_ns_ - device_ns <= kSetBackNs) {
+    unwrapped_ns = device_ns + offset_ns_;
+    return true;
+  }
   // From the last eighth of 32 bits into the first: a wrap. Any other way back is a new time.
   const bool wrapped = back && range_ns_ > 0 && last_ns_ <= range_ns_ &&
                        last_ns_ > range_ns_ / 8 * 7 && device_ns < range_ns_ / 8;

@@ -26,7 +26,8 @@ class DeviceClock {
  public:
   /// `tick_hz`: of the counter; 0: not known, or it has 64 bits anyway.
   explicit DeviceClock(std::uint64_t tick_hz = 0);
-  /// Gives the unwrapped time. False where it does not rise: then the clock was set anew.
+  /// Gives the unwrapped time. False where it went back by more than a millisecond: then the clock
+  /// was set anew. By less, or where it stands still, it is given as it is.
   bool Next(std::int64_t device_ns, std::int64_t& unwrapped_ns);
 
  private:

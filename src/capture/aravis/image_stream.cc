@@ -3,7 +3,6 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <ctime>
 #include <string>
 
 #include "receive_buffer.h"
@@ -17,18 +16,6 @@ constexpr std::size_t kFewestBuffers = 8;
 constexpr std::size_t kMostPool_bytes = std::size_t{256} << 20;
 constexpr double kUnknownRate_hz = 100;
 
-std::int64_t NowNs(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
-
-// Aravis notes the arrival by the wall clock, which may be set; both clocks are read now.
-std::int64_t MonotonicNs(std::int64_t wall_ns) {
-  const std::int64_t monotonic_ns = NowNs(CLOCK_MONOTONIC);
-  return monotonic_ns - std::max<std::int64_t>(0, NowNs(CLOCK_REALTIME) - wall_ns);
-}
-
 std::size_t PoolSize(double rate_hz, std::size_t payload_bytes) {
   const double rate = rate_hz > 0 ? rate_hz : kUnknownRate_hz;
   const std::size_t most = std::max<std::size_t>(kMostPool_bytes / payload_bytes, 1);
@@ -41,6 +28,16 @@ std::size_t PoolSize(double rate_hz, std::size_t payload_bytes) {
 void OnStream(void* /*unused*/, ArvStreamCallbackType type, ArvBuffer* /*buffer*/) {
   constexpr int kNice = -10;
   if (type == ARV_STREAM_CALLBACK_TYPE_INIT) setpriority(PRIO_PROCESS, 0, kNice);
+}
+
+// Where the stream's packets arrive. Other streams may have the same port at other addresses.
+sockaddr_in SocketOf(ArvCamera* camera, ArvStream* stream) {
+  sockaddr_in address{};
+  ArvGvDevice* device = ARV_GV_DEVICE(arv_camera_get_device(camera));
+  GSocketAddress* interface = arv_gv_device_get_interface_address(device);
+  g_socket_address_to_native(interface, &address, sizeof address, nullptr);
+  address.sin_port = htons(arv_gv_stream_get_port(ARV_GV_STREAM(stream)));
+  return address;
 }
 
 bool HasAgreedFormat(ArvBuffer* buffer, const AgreedFormat& agreed) {
@@ -70,7 +67,7 @@ ImageLayout LayoutOf(ArvBuffer* buffer, const AgreedFormat& agreed, std::size_t 
 
 ImageStream::ImageStream(ArvCamera* camera, const std::string& uri, const AgreedFormat& agreed,
                          double rate_hz)
-    : agreed_(agreed) {
+    : agreed_(agreed), arrivals_(Moment::Now()) {
   GErrorSlot error;
   const guint payload = arv_camera_get_payload(camera, error.out());
   if (error || payload == 0) {
@@ -86,9 +83,7 @@ ImageStream::ImageStream(ArvCamera* camera, const std::string& uri, const Agreed
     throw DeviceError(uri + ": no image stream can be opened: " + error.text());
   }
   if (gige) {
-    const std::int64_t held = EnlargeReceiveBuffer(
-        static_cast<std::uint16_t>(arv_gv_stream_get_port(ARV_GV_STREAM(stream_.get()))));
-    warning_ = ReceiveBufferWarning(uri, held);
+    warning_ = ReceiveBufferWarning(uri, EnlargeReceiveBuffer(SocketOf(camera, stream_.get())));
   }
   for (std::size_t i = PoolSize(rate_hz, payload); i > 0; --i) {
     arv_stream_push_buffer(stream_.get(), arv_buffer_new_allocate(payload));
@@ -104,7 +99,7 @@ BufferState ImageStream::Next(std::chrono::microseconds at_most, RawFrame& frame
   return state;
 }
 
-BufferState ImageStream::Take(ArvBuffer* buffer, RawFrame& frame, Image& image) const {
+BufferState ImageStream::Take(ArvBuffer* buffer, RawFrame& frame, Image& image) {
   if (arv_buffer_get_status(buffer) != ARV_BUFFER_STATUS_SUCCESS) return BufferState::kIncomplete;
   if (!HasAgreedFormat(buffer, agreed_)) return BufferState::kWrongFormat;
   std::size_t bytes = 0;
@@ -113,7 +108,8 @@ BufferState ImageStream::Take(ArvBuffer* buffer, RawFrame& frame, Image& image) 
   if (!ConvertToGrey(data, agreed_.format, layout, image).empty()) return BufferState::kIncomplete;
   frame.number = arv_buffer_get_frame_id(buffer);
   frame.device_ns = static_cast<std::int64_t>(arv_buffer_get_timestamp(buffer));
-  frame.host_ns = MonotonicNs(static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer)));
+  const auto wall_ns = static_cast<std::int64_t>(arv_buffer_get_system_timestamp(buffer));
+  frame.host_ns = arrivals_.MonotonicNs(wall_ns, Moment::Now());
   return BufferState::kWhole;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "../pixel_formats.h"
+#include "arrival_clock.h"
 #include "gobject.h"
 #include "raw_frame.h"
 
@@ -38,9 +39,10 @@ class ImageStream {
   [[nodiscard]] const std::string& warning() const { return warning_; }
 
  private:
-  BufferState Take(ArvBuffer* buffer, RawFrame& frame, Image& image) const;
+  BufferState Take(ArvBuffer* buffer, RawFrame& frame, Image& image);
 
   AgreedFormat agreed_;
+  ArrivalClock arrivals_;
   std::string warning_;
   GObjectPtr<ArvStream> stream_;
 };

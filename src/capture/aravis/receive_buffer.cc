@@ -1,6 +1,5 @@
 #include "receive_buffer.h"
 
-#include <netinet/in.h>
 #include <sys/socket.h>
 
 #include <cstdlib>
@@ -9,7 +8,7 @@
 namespace stereomotion {
 namespace {
 
-bool IsBoundTo(int descriptor, std::uint16_t port) {
+bool IsBoundTo(int descriptor, const sockaddr_in& wanted) {
   sockaddr_in address{};
   socklen_t size = sizeof address;
   int type = 0;
@@ -17,23 +16,24 @@ bool IsBoundTo(int descriptor, std::uint16_t port) {
   return getsockopt(descriptor, SOL_SOCKET, SO_TYPE, &type, &type_size) == 0 &&
          type == SOCK_DGRAM &&
          getsockname(descriptor, reinterpret_cast<sockaddr*>(&address), &size) == 0 &&
-         address.sin_family == AF_INET && ntohs(address.sin_port) == port;
+         address.sin_family == AF_INET && address.sin_port == wanted.sin_port &&
+         address.sin_addr.s_addr == wanted.sin_addr.s_addr;
 }
 
 // Aravis does not give its socket away.
-int FindSocket(std::uint16_t port) {
+int FindSocket(const sockaddr_in& wanted) {
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", ignored)) {
     const int descriptor = std::atoi(entry.path().filename().c_str());
-    if (IsBoundTo(descriptor, port)) return descriptor;
+    if (IsBoundTo(descriptor, wanted)) return descriptor;
   }
   return -1;
 }
 
 }  // namespace
 
-std::int64_t EnlargeReceiveBuffer(std::uint16_t port) {
-  const int descriptor = FindSocket(port);
+std::int64_t EnlargeReceiveBuffer(const sockaddr_in& bound_to) {
+  const int descriptor = FindSocket(bound_to);
   if (descriptor < 0) return 0;
   int bytes = kReceiveBuffer_bytes;
   if (setsockopt(descriptor, SOL_SOCKET, SO_RCVBUFFORCE, &bytes, sizeof bytes) != 0) {

@@ -3,11 +3,13 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 
 #include "disk_calls.h"
+#include "recording_lock.h"
 #include "stereomotion/core/user_error.h"
 
 namespace stereomotion {
@@ -24,21 +26,15 @@ std::int64_t BytesOf(const H5Images& shape) {
 
 H5ImageReader::H5ImageReader(const fs::path& file, const std::string& dataset)
     : name_(file.string() + ":" + dataset) {
-  const H5Reader reader(file);
+  const H5Reader reader(LinkedFile(file));  // HDF5 looks beside it for others
   shape_ = reader.Images(dataset);
-  const std::vector<H5Run> runs = reader.Runs(dataset);
   if (shape_.offset >= 0) {
-    files_ = {file};
+    sources_.push_back({file, "", shape_.frames});
     for (std::int64_t i = 0; i < shape_.frames; ++i) {
       places_.push_back({0, shape_.offset + i * BytesOf(shape_)});
     }
-  } else if (!runs.empty()) {
-    places_.resize(static_cast<std::size_t>(shape_.frames));
-    for (const H5Run& run : runs) {
-      if (LocateRun(run)) continue;
-      places_.clear();  // an unusual virtual dataset: HDF5 knows what to make of it
-      break;
-    }
+  } else if (shape_.is_virtual) {
+    LocateRuns(reader.Runs(dataset));
   }
   if (places_.empty()) dataset_ = reader.OpenDataset(dataset);
 }
@@ -48,21 +44,63 @@ H5ImageReader::~H5ImageReader() {
   dataset_ = H5Handle();
 }
 
-bool H5ImageReader::LocateRun(const H5Run& run) {
-  const H5Reader reader(run.file);
-  const H5Images there = reader.Images(run.dataset);
-  const bool fits = there.offset >= 0 && there.type == shape_.type &&
-                    there.width_px == shape_.width_px && there.height_px == shape_.height_px &&
-                    run.in_file + run.count <= there.frames &&
-                    run.first + run.count <= shape_.frames;
-  if (!fits) return false;
-  if (files_.empty() || files_.back() != run.file) files_.push_back(run.file);
-  for (std::int64_t i = 0; i < run.count; ++i) {
-    places_[static_cast<std::size_t>(run.first + i)] = {
-        static_cast<std::int32_t>(files_.size()) - 1,
-        there.offset + (run.in_file + i) * BytesOf(shape_)};
+// Whatever HDF5 does not find it reads as black images, and a circle of virtual datasets breaks it.
+// So it reads only what is made of whole datasets of other kinds.
+void H5ImageReader::LocateRuns(const std::vector<H5Run>& runs) {
+  places_.resize(static_cast<std::size_t>(shape_.frames));
+  bool is_direct = true;
+  for (const H5Run& run : runs) is_direct = LocateRun(run) && is_direct;
+  std::string problem = runs.empty() ? "a virtual dataset of nothing" : "";
+  bool any = false;
+  for (const Source& source : sources_) {
+    any = any || source.problem.empty();
+    if (problem.empty()) problem = source.problem;
   }
-  return true;
+  if ((!is_direct && !problem.empty()) || !any) {
+    throw UserError(name_ + ": has no images: found " + problem +
+                    ", expected the files that it is made of");
+  }
+  if (!is_direct) places_.clear();
+}
+
+// False: these can be read, but only by HDF5.
+bool H5ImageReader::LocateRun(const H5Run& run) {
+  H5Images there;
+  Source source{run.file, "", run.count};
+  try {
+    there = H5Reader(run.file).Images(run.dataset);
+    if (there.is_virtual) source.problem = run.file.string() + " with a virtual dataset again";
+  } catch (const UserError& error) {
+    source.problem = error.what();
+  }
+  // Of an unusual one HDF5 knows what to make.
+  const bool fits =
+      run.count == 0 ||
+      (there.type == shape_.type && there.width_px == shape_.width_px &&
+       there.height_px == shape_.height_px && run.in_file + run.count <= there.frames &&
+       run.first + run.count <= shape_.frames);
+  if (source.problem.empty() && !fits) source.problem = run.file.string() + " with other images";
+  const bool is_direct = !source.problem.empty() || (there.offset >= 0 && run.count > 0);
+  sources_.push_back(std::move(source));
+  const std::int64_t end = std::min(run.first + run.count, shape_.frames);
+  for (std::int64_t row = run.first; row < end; ++row) {
+    places_[static_cast<std::size_t>(row)] = {
+        static_cast<std::int32_t>(sources_.size()) - 1,
+        there.offset + (run.in_file + row - run.first) * BytesOf(shape_)};
+  }
+  return is_direct;
+}
+
+std::string H5ImageReader::Missing() const {
+  std::int64_t frames = 0;
+  std::string first;
+  for (const Source& source : sources_) {
+    if (source.problem.empty()) continue;
+    frames += source.frames;
+    if (first.empty()) first = source.problem;
+  }
+  if (first.empty()) return "";
+  return name_ + ": " + std::to_string(frames) + " images are missing; the first: " + first;
 }
 
 std::string H5ImageReader::Read(std::int64_t position, Image& image) const {
@@ -78,8 +116,10 @@ std::string H5ImageReader::Read(std::int64_t position, Image& image) const {
 }
 
 std::string H5ImageReader::ReadDirectly(const Place& place, Image& image) const {
-  if (place.file < 0) return "no image is recorded for this row";
-  const fs::path& file = files_[static_cast<std::size_t>(place.file)];
+  if (place.source < 0) return "no image is recorded for this row";
+  const Source& source = sources_[static_cast<std::size_t>(place.source)];
+  if (!source.problem.empty()) return source.problem;
+  const fs::path& file = source.file;
   // Opened for each image: a long recording has more files than a program may hold open.
   const int fd = open(file.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd < 0) return file.string() + " cannot be opened: " + std::strerror(errno);

@@ -25,19 +25,27 @@ class H5ImageReader {
   [[nodiscard]] std::string Read(std::int64_t position, Image& image) const;
   /// True: the images are read without HDF5.
   [[nodiscard]] bool is_direct() const { return !places_.empty(); }
+  /// Tells for a person what of a virtual dataset is missing; empty: nothing.
+  [[nodiscard]] std::string Missing() const;
 
  private:
   struct Place {
-    std::int32_t file = -1;  ///< in `files_`; −1: the image is missing
+    std::int32_t source = -1;  ///< in `sources_`; −1: no image is recorded for the row
     std::int64_t offset = 0;
   };
+  struct Source {
+    std::filesystem::path file;
+    std::string problem;      ///< why its images are missing
+    std::int64_t frames = 0;  ///< of this recording that come from it
+  };
+  void LocateRuns(const std::vector<H5Run>& runs);
   bool LocateRun(const H5Run& run);
   std::string ReadDirectly(const Place& place, Image& image) const;
   std::string ReadThroughHdf5(std::int64_t position, Image& image) const;
 
   std::string name_;
   H5Images shape_;
-  std::vector<std::filesystem::path> files_;
+  std::vector<Source> sources_;
   std::vector<Place> places_;  ///< empty: read through HDF5
   H5Handle dataset_;
 };

@@ -16,6 +16,8 @@ constexpr int kImageRank = 3;
 // Beyond these a file is damaged: no camera has such images, no take so many.
 constexpr hsize_t kMostPixelsOfASide = 1 << 16;
 constexpr hsize_t kMostFrames = 1 << 28;
+// Deflate makes 1032 equal bytes one at best; what says that it holds more is damaged.
+constexpr double kStrongestCompression = 1100;
 
 using Sizes = std::vector<hsize_t>;
 
@@ -47,6 +49,11 @@ herr_t CollectName(hid_t, const char* name, const H5L_info_t*, void* names) {
   return 0;
 }
 
+bool IsVirtual(const H5Handle& dataset) {
+  const H5Handle list(H5Dget_create_plist(dataset.id()));
+  return H5Pget_layout(list.id()) == H5D_VIRTUAL;
+}
+
 // Only then the bytes of the file are those of the images.
 std::int64_t PlainOffset(const H5Handle& dataset, const H5Handle& type, PixelType pixels) {
   const H5Handle list(H5Dget_create_plist(dataset.id()));
@@ -70,7 +77,8 @@ H5Reader::H5Reader(fs::path file) : file_(std::move(file)) {
         "fit), expected a recording; `stereomotion record --repair` makes it anew from " +
         "its segments");
   }
-  h5_ = H5Handle(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, H5FileAccess().id()));
+  const H5Handle access = H5FileAccess();  // closing it would clear what HDF5 has to say
+  h5_ = H5Handle(H5Fopen(file_.c_str(), H5F_ACC_RDONLY, access.id()));
   if (!h5_) {
     throw UserError(file_.string() + ": cannot be read as an HDF5 file (" + H5ErrorText() +
                     "), expected a recording");
@@ -124,9 +132,26 @@ H5Images H5Reader::Images(const std::string& name) const {
   }
   H5Images images{static_cast<std::int64_t>(sizes[0]), static_cast<int>(sizes[2]),
                   static_cast<int>(sizes[1]), bytes == 1 ? PixelType::kGray8 : PixelType::kGray16};
+  images.is_virtual = IsVirtual(dataset);
   images.offset = PlainOffset(dataset, type, images.type);
+  // What other files hold takes no room here; it has rows here.
+  const std::int64_t row_bytes =
+      images.is_virtual ? 1 : std::int64_t{images.width_px} * images.height_px;
+  RequireRoom(name, images.frames, row_bytes);
   images.grey_bits = ReadGreyBits(dataset, images.type);
   return images;
+}
+
+void H5Reader::RequireRoom(const std::string& name, std::int64_t count,
+                           std::int64_t row_bytes) const {
+  std::error_code error;
+  const auto bytes = static_cast<double>(fs::file_size(file_, error));
+  if (error || static_cast<double>(count) * static_cast<double>(row_bytes) <=
+                   bytes * kStrongestCompression) {
+    return;
+  }
+  Fail(name, std::to_string(count) + " rows in a file of " + std::to_string(bytes) + " bytes",
+       "as many as fit into it");
 }
 
 void H5Reader::ReadColumn(const std::string& name, std::int64_t count, bool whole, hid_t native,
@@ -138,6 +163,7 @@ void H5Reader::ReadColumn(const std::string& name, std::int64_t count, bool whol
     Fail(name, "a dataset of size " + Spelled(sizes),
          "[" + std::to_string(count) + "], a number a frame");
   }
+  RequireRoom(name, count, static_cast<std::int64_t>(H5Tget_size(type.id())));
   const H5T_class_t kind = H5Tget_class(type.id());
   const bool fits = kind == H5T_INTEGER || (!whole && kind == H5T_FLOAT);
   if (!fits) Fail(name, Spelled(type), whole ? "64-bit integers" : "numbers");

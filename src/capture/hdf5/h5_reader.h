@@ -18,10 +18,12 @@ struct H5Images {
   /// Where the first image lies in the file, row by row without gaps in this machine's byte order;
   /// −1: it has to be read through HDF5 (chunked, compressed, other byte order, virtual).
   std::int64_t offset = -1;
-  int grey_bits = 0;  ///< attribute `grey_bits`; 0: not told
+  int grey_bits = 0;        ///< attribute `grey_bits`; 0: not told
+  bool is_virtual = false;  ///< made of datasets elsewhere (`H5Reader::Runs`)
 };
 
-/// Says from which file a run of frames of a virtual dataset comes.
+/// Says from which file a run of frames of a virtual dataset comes. `count` is 0 where they are not
+/// whole frames in order.
 struct H5Run {
   std::filesystem::path file;
   std::string dataset;
@@ -45,14 +47,15 @@ class H5Reader {
                                                    std::int64_t count) const;
   /// Reads numbers, whole or not.
   [[nodiscard]] std::vector<double> Numbers(const std::string& dataset, std::int64_t count) const;
-  /// Lists what a virtual dataset of images is made of; empty: it is none, or not of whole frames
-  /// in order.
+  /// Lists what a virtual dataset of images is made of.
   [[nodiscard]] std::vector<H5Run> Runs(const std::string& name) const;
   [[nodiscard]] H5Handle OpenDataset(const std::string& dataset) const;
   [[noreturn]] void Fail(const std::string& dataset, const std::string& found,
                          const std::string& expected) const;
 
  private:
+  // Throws `UserError` where a dataset says that it has more rows than can be in the file.
+  void RequireRoom(const std::string& name, std::int64_t count, std::int64_t row_bytes) const;
   void ReadColumn(const std::string& name, std::int64_t count, bool whole, hid_t native,
                   void* values) const;
 

@@ -2,6 +2,7 @@
 #include <array>
 
 #include "h5_reader.h"
+#include "recording_lock.h"
 
 namespace stereomotion {
 namespace {
@@ -42,22 +43,27 @@ std::string NameOf(const Get& get) {
   return name;
 }
 
-bool ReadRun(const H5Handle& list, std::size_t i, const fs::path& folder, H5Run& run) {
-  Block here, there;
-  if (!SelectedBlock(H5Handle(H5Pget_virtual_vspace(list.id(), i)), here)) return false;
-  if (!SelectedBlock(H5Handle(H5Pget_virtual_srcspace(list.id(), i)), there)) return false;
-  if (here.frames() != there.frames()) return false;
-  const std::string file = NameOf([&](char* name, std::size_t size) {
+// `file`: that of the virtual dataset; a dot stands for it.
+H5Run ReadRun(const H5Handle& list, std::size_t i, const fs::path& file) {
+  H5Run run;
+  const std::string source = NameOf([&](char* name, std::size_t size) {
     return H5Pget_virtual_filename(list.id(), i, name, size);
   });
   run.dataset = NameOf([&](char* name, std::size_t size) {
     return H5Pget_virtual_dsetname(list.id(), i, name, size);
   });
-  run.file = folder / file;  // an absolute name stays as it is
+  // An absolute name stays as it is.
+  run.file = source == "." ? file : file.parent_path() / source;
+  Block here, there;
+  if (!SelectedBlock(H5Handle(H5Pget_virtual_vspace(list.id(), i)), here) ||
+      !SelectedBlock(H5Handle(H5Pget_virtual_srcspace(list.id(), i)), there) ||
+      here.frames() != there.frames()) {
+    return run;
+  }
   run.first = static_cast<std::int64_t>(here.first[0]);
   run.in_file = static_cast<std::int64_t>(there.first[0]);
   run.count = static_cast<std::int64_t>(here.frames());
-  return !file.empty() && !run.dataset.empty();
+  return run;
 }
 
 }  // namespace
@@ -69,10 +75,9 @@ std::vector<H5Run> H5Reader::Runs(const std::string& name) const {
   if (H5Pget_layout(list.id()) != H5D_VIRTUAL || H5Pget_virtual_count(list.id(), &count) < 0) {
     return {};
   }
-  std::vector<H5Run> runs(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!ReadRun(list, i, file_.parent_path(), runs[i])) return {};
-  }
+  const fs::path file = LinkedFile(file_);
+  std::vector<H5Run> runs;
+  for (std::size_t i = 0; i < count; ++i) runs.push_back(ReadRun(list, i, file));
   return runs;
 }
 

@@ -37,6 +37,8 @@ class H5Stream : public FrameStream {
     const H5Lock lock;
     images_ = std::make_unique<H5ImageReader>(file, group + "images");
     rows_ = ReadH5Rows(H5Reader(file), group, images_->shape().frames, options.fps);
+    const std::string missing = images_->Missing();
+    if (!missing.empty()) warnings_.push_back(missing);
     if (options.hash_images) digests_ = std::make_unique<ImageDigests>(rows_.frames.size());
   }
 
@@ -45,7 +47,10 @@ class H5Stream : public FrameStream {
   std::string times_name() const override { return "timestamp_ns"; }
   bool is_numbered() const override { return rows_.has_numbers; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
-  fs::path pairs_of() const override { return rows_.has_pairs ? file_ : fs::path(); }
+  fs::path pairs_of() const override {
+    std::error_code none;  // it was opened, so it is there
+    return rows_.has_pairs ? fs::canonical(file_, none) : fs::path();
+  }
 
   void ReadImage(std::int64_t position, Frame& frame) const override {
     frame.problem = images_->Read(position, frame.image);

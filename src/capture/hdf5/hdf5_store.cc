@@ -1,29 +1,20 @@
 #include "hdf5_store.h"
 
 #include <algorithm>
-#include <cmath>
 #include <mutex>
 #include <optional>
 
+#include "../same_images.h"
 #include "join_segments.h"
 #include "prepare_output.h"
 #include "rate_meter.h"
 #include "recording_lock.h"
+#include "segment_capacity.h"
 #include "segment_supply.h"
 #include "stereomotion/core/output_error.h"
 
 namespace stereomotion {
 namespace {
-
-// Before the rate is known.
-constexpr std::int64_t kFirstCapacity = 32;
-constexpr std::int64_t kSmallestCapacity = 8;
-// After so many segments they become twice as long: a reader of the whole recording may hold each
-// of them open (HDF5 does), and 1024 open files are what a program is given. A crash costs no more
-// for it: what is written counts frame by frame.
-constexpr int kSegmentsOfOneLength = 64;
-// Room that is taken ahead should not fill a disk.
-constexpr std::int64_t kLargestSegmentBytes = std::int64_t{4} << 30;
 
 class Hdf5Store : public FrameStore {
  public:
@@ -44,6 +35,8 @@ class Hdf5Store : public FrameStore {
   [[nodiscard]] bool HasRoom(const RingItem& item) const;
   [[nodiscard]] std::vector<SegmentCamera> Cameras() const;
   void StartSegment();
+  template <class Act>
+  void Trusted(const Act& act);
   [[nodiscard]] std::int64_t Capacity() const;
   [[nodiscard]] std::size_t PlaceOf(std::size_t side) const;
 
@@ -56,7 +49,8 @@ class Hdf5Store : public FrameStore {
   std::shared_ptr<SegmentWriter> current_;
   int started_ = 0;
   RateMeter rate_;
-  std::mutex mutex_;  // guards `open_`
+  bool is_distrusted_ = false;  // of whoever flushes and closes
+  std::mutex mutex_;            // guards `open_`
   std::vector<std::shared_ptr<SegmentWriter>> open_;
   SegmentSupply supply_;
 };
@@ -73,15 +67,8 @@ bool Hdf5Store::Learn(const RingItem& item) {
                 image.grey_bits};
       is_new = true;
     }
-    if (image.width_px == camera->width_px && image.height_px == camera->height_px &&
-        image.type == camera->type) {
-      continue;
-    }
-    throw OutputError(options_.output.string() + ": camera " + camera->name +
-                      " now sends images of " + std::to_string(image.width_px) + " x " +
-                      std::to_string(image.height_px) + " px, before " +
-                      std::to_string(camera->width_px) + " x " + std::to_string(camera->height_px) +
-                      " px; a recording holds one size");
+    RequireSameImages(options_.output.string(), camera->name,
+                      {nullptr, camera->width_px, camera->height_px, 0, camera->type}, image);
   }
   return is_new;
 }
@@ -107,13 +94,9 @@ std::vector<SegmentCamera> Hdf5Store::Cameras() const {
 }
 
 std::int64_t Hdf5Store::Capacity() const {
-  const int doublings = std::min(started_ / kSegmentsOfOneLength, 16);
-  const std::int64_t wanted = rate_.FramesIn(std::ldexp(options_.segment_s, doublings));
   std::int64_t image_bytes = 0;
   for (const auto& camera : known_) image_bytes += camera ? camera->image_bytes() : 0;
-  const std::int64_t most = kLargestSegmentBytes / std::max<std::int64_t>(image_bytes, 1);
-  const std::int64_t capacity = wanted > 0 ? wanted : kFirstCapacity;
-  return std::max(std::min(capacity, most), kSmallestCapacity);
+  return SegmentCapacity(rate_, options_.segment_s, started_, image_bytes, known_[0] && known_[1]);
 }
 
 void Hdf5Store::StartSegment() {
@@ -124,7 +107,7 @@ void Hdf5Store::StartSegment() {
     const std::lock_guard lock(mutex_);
     open_.push_back(current_);
   }
-  supply_.Prepare(Cameras());
+  if (known_[0] && known_[1]) supply_.Prepare(Cameras());
 }
 
 RingPlace Hdf5Store::Reserve(const RingItem& item) {
@@ -151,6 +134,18 @@ void Hdf5Store::Write(const RingItem& item, const RingPlace& place) {
   }
 }
 
+// Where the disk refuses, rows may be torn that are not noted as brought to it.
+template <class Act>
+void Hdf5Store::Trusted(const Act& act) {
+  try {
+    act();
+  } catch (const OutputError&) {
+    is_distrusted_ = true;
+    lock_.Distrust();
+    throw;
+  }
+}
+
 void Hdf5Store::Flush() {
   std::vector<std::shared_ptr<SegmentWriter>> open;
   {
@@ -162,10 +157,10 @@ void Hdf5Store::Flush() {
     constexpr int kUnused = 2;
     const bool is_done = segment.use_count() == kUnused;
     if (!is_done) {
-      segment->Sync();
+      Trusted([&] { segment->Sync(); });
       continue;
     }
-    segment->Close();
+    Trusted([&] { segment->Close(); });
     const std::lock_guard lock(mutex_);
     open_.erase(std::find(open_.begin(), open_.end(), segment));
   }
@@ -177,23 +172,28 @@ void Hdf5Store::Close(bool failed) {
   std::exception_ptr error;
   for (auto& segment : open_) {
     try {
-      segment->Close();
+      Trusted([&] { segment->Close(); });
     } catch (const OutputError&) {
       error = std::current_exception();  // the other segments are as good as ever
     }
   }
   open_.clear();
   lock_.FreeReserve();
-  JoinSegments(options_.output, /*trust_all=*/true);
+  const JoinedSegments joined = JoinSegments(options_.output, /*trust_all=*/!is_distrusted_);
+  // The mark stays: the recording is not whole, and a repair may find the segment readable again.
+  if (!joined.notes.empty()) throw OutputError(joined.notes.front());
   lock_.Remove();
+  if (started_ == 0) RemoveEmpty(options_.output);
   if (error && !failed) std::rethrow_exception(error);
 }
 
 }  // namespace
 
 std::unique_ptr<FrameStore> MakeHdf5Store(const RecorderOptions& options, const DiskCalls& disk) {
-  PrepareOutput(options);
-  return std::make_unique<Hdf5Store>(options, disk);
+  RecorderOptions real = options;
+  real.output = LinkedFile(options.output);
+  PrepareOutput(real);
+  return std::make_unique<Hdf5Store>(real, disk);
 }
 
 }  // namespace stereomotion

@@ -31,10 +31,12 @@ class Joiner {
     std::array<std::vector<std::int64_t>, kFrameColumns> columns;
     std::vector<double> exposure_us;
     std::int64_t image_offset = -1;
+    std::int64_t believed = 0;  // rows below may be valid
   };
   [[nodiscard]] Part ReadPart(const H5Reader& reader, const std::string& name) const;
   // `place`: of the camera in its segment, so that left comes first also where it came later.
   void Append(const Part& part, std::size_t place, const std::string& file);
+  static void Forget(const H5Reader& reader, const fs::path& segment, const Part& part);
   static void GiveBackTail(const fs::path& segment, const Part& part);
 
   const bool trust_all_;
@@ -56,8 +58,8 @@ Joiner::Part Joiner::ReadPart(const H5Reader& reader, const std::string& name) c
     }
   }
   const std::int64_t synced = reader.Integers(group + "synced", 1).front();
-  const std::int64_t end = trust_all_ ? images.frames : std::min(synced, images.frames);
-  for (std::int64_t row = 0; row < end; ++row) {
+  part.believed = trust_all_ ? images.frames : std::min(synced, images.frames);
+  for (std::int64_t row = 0; row < part.believed; ++row) {
     if (part.columns[kFrame][static_cast<std::size_t>(row)] >= 0) part.rows.push_back(row);
   }
   return part;
@@ -93,6 +95,20 @@ void Joiner::Append(const Part& part, std::size_t place, const std::string& file
   }
 }
 
+// What is not believed now must not be when it is joined again and nothing tells why any more.
+void Joiner::Forget(const H5Reader& reader, const fs::path& segment, const Part& part) {
+  if (part.believed >= part.shape.capacity) return;
+  const H5Handle column = reader.OpenDataset("/" + part.shape.name + "/" + kColumnNames[kFrame]);
+  const haddr_t offset = H5Dget_offset(column.id());
+  const int fd = offset == HADDR_UNDEF ? -1 : open(segment.c_str(), O_RDWR | O_CLOEXEC);
+  if (fd < 0) return;
+  const std::vector<std::int64_t> none(
+      static_cast<std::size_t>(part.shape.capacity - part.believed), kNoFrame);
+  WriteAt({}, fd, none.data(), static_cast<std::int64_t>(none.size()) * kCellBytes,
+          static_cast<std::int64_t>(offset) + part.believed * kCellBytes);
+  close(fd);
+}
+
 void Joiner::GiveBackTail(const fs::path& segment, const Part& part) {
   const int fd = part.image_offset < 0 ? -1 : open(segment.c_str(), O_RDWR | O_CLOEXEC);
   if (fd < 0) return;
@@ -108,9 +124,11 @@ std::int64_t Joiner::Add(const fs::path& segment) {
   const H5Reader reader(segment);
   std::vector<Part> parts;
   for (const std::string& name : reader.Cameras()) parts.push_back(ReadPart(reader, name));
+  if (parts.empty()) throw UserError(segment.string() + ": holds no camera, expected a segment");
   std::int64_t rows = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Append(parts[i], i, segment.filename().string());
+    Forget(reader, segment, parts[i]);
     GiveBackTail(segment, parts[i]);
     rows += static_cast<std::int64_t>(parts[i].rows.size());
   }
@@ -122,19 +140,30 @@ void RemoveParts(const fs::path& folder) {
   std::vector<fs::path> parts;
   std::error_code error, none;
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (it->path().extension() == ".part") parts.push_back(it->path());
+    if (IsCutSegment(it->path())) parts.push_back(it->path());
   }
   for (const fs::path& part : parts) fs::remove(part, none);
 }
 
 }  // namespace
 
+bool IsSegment(const fs::path& file) {
+  constexpr std::size_t kFewestDigits = 6;
+  const std::string stem = file.stem().string();
+  return file.extension() == ".h5" && stem.size() >= kFewestDigits &&
+         stem.find_first_not_of("0123456789") == std::string::npos;
+}
+
+bool IsCutSegment(const fs::path& file) {
+  return file.extension() == ".part" && IsSegment(file.stem());
+}
+
 std::vector<fs::path> ListSegments(const fs::path& recording) {
   std::vector<fs::path> segments;
   std::error_code error;
   const fs::path folder = SegmentFolder(recording);
   for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-    if (it->path().extension() == ".h5") segments.push_back(it->path());
+    if (IsSegment(it->path())) segments.push_back(it->path());
   }
   std::sort(segments.begin(), segments.end());
   return segments;
@@ -152,7 +181,7 @@ JoinedSegments JoinSegments(const fs::path& recording, bool trust_all) {
       joined.notes.push_back(std::string(error.what()) + ": this segment is left out");
     }
   }
-  WriteJoined(recording, joiner.cameras());
+  if (!joiner.cameras().empty()) WriteJoined(LinkedFile(recording), joiner.cameras());
   for (const JoinedCamera& camera : joiner.cameras()) {
     joined.names.push_back(camera.shape.name);
     joined.frames.push_back(camera.frames());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "join_segments.h"
 #include "recording_lock.h"
 #include "stereomotion/capture/read_image.h"
 #include "stereomotion/core/output_error.h"
@@ -13,15 +14,14 @@ namespace {
 namespace fs = std::filesystem;
 
 bool IsOurs(const fs::path& file) {
-  const std::string name = file.filename().string();
-  return file.extension() == ".h5" || file.extension() == ".part" || name == "unfinished";
+  return IsSegment(file) || IsCutSegment(file) || file.filename() == "unfinished";
 }
 
 void RequireNames(const std::vector<std::string>& names) {
   for (const std::string& name : names) {
-    if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos) {
-      throw UserError("camera '" + name + "': expected a name without '/' that does not begin " +
-                      "with a dot");
+    if (name.empty() || name.front() == '.' || name.find_first_of("/:") != std::string::npos) {
+      throw UserError("camera '" + name + "': expected a name without '/' and ':' that does not " +
+                      "begin with a dot");
     }
   }
   for (std::size_t i = 1; i < names.size(); ++i) {
@@ -75,6 +75,12 @@ void PrepareFolders(const fs::path& output, const std::vector<std::string>& name
   }
   RequireRecording(output, names);
   for (const std::string& camera : names) fs::remove_all(output / camera, error);
+}
+
+void RemoveEmpty(const fs::path& recording) {
+  std::error_code none;
+  fs::remove(recording, none);
+  fs::remove(SegmentFolder(recording), none);
 }
 
 void PrepareOutput(const RecorderOptions& options) {

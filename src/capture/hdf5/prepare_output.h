@@ -13,7 +13,11 @@ namespace stereomotion {
 /// the disk refuses.
 void PrepareOutput(const RecorderOptions& options);
 
-/// The same for folders of images `output`/NAME, which are made by whoever writes them.
+/// Removes a recording file into which no frame came: it looks like a recording and is none.
+void RemoveEmpty(const std::filesystem::path& recording);
+
+/// The same as `PrepareOutput` for folders of images `output`/NAME, which are made by whoever
+/// writes them.
 void PrepareFolders(const std::filesystem::path& output, const std::vector<std::string>& names,
                     bool overwrite);
 

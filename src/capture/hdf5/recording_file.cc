@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "h5_images.h"
 #include "h5_reader.h"
 #include "join_segments.h"
 #include "recording_lock.h"
@@ -14,8 +15,7 @@ namespace fs = std::filesystem;
 
 bool IsRecordingFile(const fs::path& file) {
   std::error_code none;
-  const fs::path extension = file.extension();
-  return (extension == ".h5" || extension == ".hdf5") && !fs::is_directory(file, none);
+  return HasRecordingExtension(file) && !fs::is_directory(file, none);
 }
 
 // A camera may have started later than the other.
@@ -41,14 +41,32 @@ RepairReport ReportOfWhole(const fs::path& recording) {
   const H5Reader reader(recording);
   const auto cameras = reader.Cameras();
   for (std::size_t i = 0; i < std::min<std::size_t>(2, cameras.size()); ++i) {
-    report.frames[i] = reader.Images("/" + cameras[i] + "/images").frames;
+    const H5ImageReader images(recording, "/" + cameras[i] + "/images");
+    report.frames[i] = images.shape().frames;
+    const std::string missing = images.Missing();
+    if (!missing.empty()) report.notes.push_back(missing);
   }
   return report;
+}
+
+// The segments have all that it says: whatever is not surely whole is joined from them anew.
+bool IsWhole(const fs::path& recording) {
+  if (!IsSealWhole(recording)) return false;
+  try {
+    const H5Lock lock;
+    return !H5Reader(recording).Cameras().empty();
+  } catch (const UserError&) {
+    return false;
+  }
 }
 
 RepairReport ReportOf(const fs::path& recording, const JoinedSegments& joined) {
   RepairReport report;
   report.notes = joined.notes;
+  if (joined.names.empty()) {
+    report.notes.push_back(SegmentFolder(recording).string() +
+                           ": holds no images; nothing was written");
+  }
   for (std::size_t i = 0; i < std::min<std::size_t>(2, joined.frames.size()); ++i) {
     report.frames[i] = joined.frames[i];
     report.notes.push_back(recording.string() + ": " + std::to_string(joined.frames[i]) +
@@ -81,17 +99,18 @@ RepairReport RepairRecording(const fs::path& recording) {
                     "not finished has its images there");
   }
   if (!IsMarkedUnfinished(recording)) {
-    const bool is_whole = fs::exists(recording, none) && !IsSealBroken(recording);
+    const bool is_whole = IsWhole(recording);
     return is_whole ? ReportOfWhole(recording)
                     : ReportOf(recording, JoinSegments(recording, /*trust_all=*/true));
   }
   RecordingLock lock(recording, RecordingLock::Use::kRepair);
   lock.FreeReserve();
-  RepairReport report = ReportOf(recording, JoinSegments(recording, !lock.is_from_earlier_boot()));
+  RepairReport report = ReportOf(recording, JoinSegments(recording, !lock.may_be_torn()));
   lock.Remove();
-  if (lock.is_from_earlier_boot()) {
-    report.notes.push_back(recording.string() + ": the computer was started anew since it was " +
-                           "recorded: only what had surely reached the disk is kept");
+  if (lock.may_be_torn()) {
+    report.notes.push_back(recording.string() + ": the computer was started anew, or the disk " +
+                           "failed or was taken away, since it was recorded: only what had " +
+                           "surely reached the disk is kept");
   }
   return report;
 }

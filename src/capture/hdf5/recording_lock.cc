@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -25,11 +26,24 @@ constexpr off_t kReserveBytes = 32 << 20;
 // Such a small part of a disk is reserved at most.
 constexpr std::uintmax_t kSmallPart = 16;
 
-// The kernel's name of the time since the computer was started; empty where it has none.
-std::string BootOf() {
+// Names the time since the disk was mounted, as far as the kernel does; 0: it does not.
+std::uint64_t MountOf(int fd) {
+  constexpr unsigned kNeverUsedAgain = 0x4000;  // STATX_MNT_ID_UNIQUE of Linux 6.8
+  struct statx about {};
+  for (const unsigned kind : {kNeverUsedAgain, unsigned{STATX_MNT_ID}}) {
+    if (statx(fd, "", AT_EMPTY_PATH, kind, &about) == 0 && (about.stx_mask & kind) != 0) {
+      return about.stx_mnt_id;
+    }
+  }
+  return 0;
+}
+
+// Names the time in which the kernel brings all that is written to the disk: since the computer was
+// started and the disk mounted.
+std::string SessionOf(int fd) {
   std::string boot;
   std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), boot);
-  return boot;
+  return boot + " " + std::to_string(MountOf(fd));
 }
 
 std::string ReadLine(const fs::path& file) {
@@ -41,7 +55,16 @@ std::string ReadLine(const fs::path& file) {
 
 }  // namespace
 
-fs::path SegmentFolder(const fs::path& recording) { return recording.string() + ".segments"; }
+fs::path LinkedFile(const fs::path& file) {
+  std::error_code error;
+  if (!fs::is_symlink(file, error)) return file;
+  const fs::path linked = fs::weakly_canonical(file, error);
+  return error ? file : linked;
+}
+
+fs::path SegmentFolder(const fs::path& recording) {
+  return LinkedFile(recording).string() + ".segments";
+}
 
 RecordingLock::RecordingLock(const fs::path& recording, Use use) : file_(MarkOf(recording)) {
   const int create = use == Use::kRecord ? O_CREAT : 0;
@@ -58,16 +81,16 @@ RecordingLock::RecordingLock(const fs::path& recording, Use use) : file_(MarkOf(
                     ": is still being recorded by another program; wait until that has ended");
   }
   if (use == Use::kRecord) {
-    Write(BootOf());
+    Write(SessionOf(fd_));
   } else {
-    earlier_boot_ = ReadLine(file_) != BootOf();
+    may_be_torn_ = ReadLine(file_) != SessionOf(fd_);
   }
 }
 
 RecordingLock::~RecordingLock() { close(fd_); }
 
-void RecordingLock::Write(const std::string& boot) {
-  const std::string text = boot +
+void RecordingLock::Write(const std::string& session) {
+  const std::string text = session +
                            "\nThis recording is not finished: `stereomotion record --repair`" +
                            " makes it readable after a crash.\n";
   const bool done = ftruncate(fd_, 0) == 0 &&
@@ -84,6 +107,11 @@ void RecordingLock::Write(const std::string& boot) {
   const std::string why = std::strerror(errno);
   close(fd_);
   throw OutputError(file_.string() + ": cannot be written: " + why);
+}
+
+void RecordingLock::Distrust() {
+  // Refused by that disk, too: then it counts as before.
+  if (pwrite(fd_, "!", 1, 0) != 1) return;
 }
 
 void RecordingLock::FreeReserve() const {

@@ -5,7 +5,10 @@
 
 namespace stereomotion {
 
-/// Names the folder of a recording's segments: "rec.h5.segments".
+/// Names the file itself where `file` is a symbolic link to it.
+std::filesystem::path LinkedFile(const std::filesystem::path& file);
+
+/// Names the folder of a recording's segments: "rec.h5.segments", beside the file itself.
 std::filesystem::path SegmentFolder(const std::filesystem::path& recording);
 
 /// Marks a recording as being written: a file in the segments' folder that is there until the
@@ -21,20 +24,23 @@ class RecordingLock {
   RecordingLock(const RecordingLock&) = delete;
   RecordingLock& operator=(const RecordingLock&) = delete;
 
-  /// Whether the computer was started anew since the recording began: then the kernel had no time
-  /// to bring all that was written to the disk.
-  [[nodiscard]] bool is_from_earlier_boot() const { return earlier_boot_; }
+  /// Whether something kept the kernel from bringing all that was written to the disk: since the
+  /// recording began the computer was started anew, the disk was taken away or it refused.
+  [[nodiscard]] bool may_be_torn() const { return may_be_torn_; }
+  /// The disk refused what was written: whoever repairs believes only what was noted as brought to
+  /// it.
+  void Distrust();
   /// Gives back the room that was kept for joining the segments on a full disk.
   void FreeReserve() const;
   /// The recording is whole: the mark is taken away.
   void Remove();
 
  private:
-  void Write(const std::string& boot);
+  void Write(const std::string& session);
 
   std::filesystem::path file_;
   int fd_ = -1;
-  bool earlier_boot_ = false;
+  bool may_be_torn_ = false;
 };
 
 /// Tells whether the mark is there.

@@ -34,6 +34,22 @@ std::string DigestOfStart(std::ifstream& stream, std::uintmax_t bytes) {
   return hash.HexDigest();
 }
 
+enum class SealState { kNone, kBroken, kWhole };
+
+SealState StateOf(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  const std::uintmax_t seal_bytes = Mark().size() + kDigits;
+  if (error || bytes < seal_bytes) return SealState::kNone;
+  std::ifstream stream(file, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(bytes - seal_bytes));
+  std::string seal(seal_bytes, '\0');
+  if (!stream.read(seal.data(), static_cast<std::streamsize>(seal_bytes))) return SealState::kNone;
+  if (seal.compare(0, Mark().size(), Mark()) != 0) return SealState::kNone;
+  const bool fits = seal.substr(Mark().size()) == DigestOfStart(stream, bytes - seal_bytes);
+  return fits ? SealState::kWhole : SealState::kBroken;
+}
+
 }  // namespace
 
 void Seal(const fs::path& file) {
@@ -44,17 +60,8 @@ void Seal(const fs::path& file) {
   if (!stream) throw OutputError(file.string() + ": cannot be written; is the disk full?");
 }
 
-bool IsSealBroken(const fs::path& file) {
-  std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(file, error);
-  const std::uintmax_t seal_bytes = Mark().size() + kDigits;
-  if (error || bytes < seal_bytes) return false;
-  std::ifstream stream(file, std::ios::binary);
-  stream.seekg(static_cast<std::streamoff>(bytes - seal_bytes));
-  std::string seal(seal_bytes, '\0');
-  if (!stream.read(seal.data(), static_cast<std::streamsize>(seal_bytes))) return false;
-  if (seal.compare(0, Mark().size(), Mark()) != 0) return false;
-  return seal.substr(Mark().size()) != DigestOfStart(stream, bytes - seal_bytes);
-}
+bool IsSealBroken(const fs::path& file) { return StateOf(file) == SealState::kBroken; }
+
+bool IsSealWhole(const fs::path& file) { return StateOf(file) == SealState::kWhole; }
 
 }  // namespace stereomotion

@@ -12,4 +12,7 @@ void Seal(const std::filesystem::path& file);
 /// Tells whether a file bears a seal that does not fit its contents. A file without is not broken.
 bool IsSealBroken(const std::filesystem::path& file);
 
+/// Tells whether a file bears a seal that fits: nothing was cut off or changed since.
+bool IsSealWhole(const std::filesystem::path& file);
+
 }  // namespace stereomotion

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <utility>
 
 #include "stereomotion/core/output_error.h"
 
@@ -86,9 +87,15 @@ std::vector<std::int64_t> SegmentWriter::CommittedWithoutGap() {
   return counts;
 }
 
+void SegmentWriter::SyncOrFail() {
+  if (is_lost_) errno = EIO;
+  is_lost_ = is_lost_ || disk_.sync(fd_) != 0;
+  if (is_lost_) Fail("cannot be brought to the disk");
+}
+
 void SegmentWriter::Sync() {
   const std::vector<std::int64_t> counts = CommittedWithoutGap();
-  if (disk_.sync(fd_) != 0) Fail("cannot be brought to the disk");
+  SyncOrFail();
   for (std::size_t i = 0; i < counts.size(); ++i) {
     Write(&counts[i], kCellBytes, offsets_[i].synced);
   }
@@ -106,9 +113,9 @@ void SegmentWriter::GiveBack(std::size_t camera) {
 void SegmentWriter::Close() {
   Sync();
   for (std::size_t i = 0; i < cameras_.size(); ++i) GiveBack(i);
-  if (disk_.sync(fd_) != 0) Fail("cannot be brought to the disk");
-  if (close(fd_) != 0) Fail("cannot be closed");
-  fd_ = -1;
+  SyncOrFail();
+  // Whatever `close` says, the number may be another file's from then on.
+  if (close(std::exchange(fd_, -1)) != 0) Fail("cannot be closed");
 }
 
 }  // namespace stereomotion

@@ -39,6 +39,7 @@ class SegmentWriter {
   void Close();
 
  private:
+  void SyncOrFail();
   void Write(const void* data, std::int64_t bytes, std::int64_t offset);
   [[noreturn]] void Fail(const char* what) const;
   void Open();
@@ -50,6 +51,8 @@ class SegmentWriter {
   const DiskCalls& disk_;
   std::vector<SegmentOffsets> offsets_;
   int fd_ = -1;
+  // After a refusal the kernel may forget what it could not write and call the next try a success.
+  bool is_lost_ = false;
   std::mutex mutex_;  // guards what follows
   std::vector<std::vector<bool>> committed_;
 };

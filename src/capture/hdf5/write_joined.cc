@@ -86,7 +86,7 @@ class JoinedWriter {
   void AddImages(const JoinedCamera& camera) {
     const SegmentCamera& shape = camera.shape;
     const H5Handle list(H5Pcreate(H5P_DATASET_CREATE));
-    const std::string source = "/" + shape.name + "/images";
+    const std::string source = Escaped("/" + shape.name + "/images");
     std::int64_t first = 0;
     for (const SegmentRun& run : camera.runs) {
       const H5Handle here = Space(shape, camera.frames(), first, run.count);

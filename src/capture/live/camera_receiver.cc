@@ -22,6 +22,9 @@ constexpr milliseconds kLastRetry{5000};
 constexpr milliseconds kNoteEvery{500};
 /// Less than this is slept, not waited for images: waits are of whole milliseconds.
 constexpr milliseconds kTriggerMargin{2};
+/// A trigger that is later than this, or than a quarter of a period, is left out: the other camera
+/// had it in time.
+constexpr milliseconds kLatestTrigger{10};
 
 CameraReceiver::Clock::duration Seconds(double seconds) {
   return duration_cast<CameraReceiver::Clock::duration>(duration<double>(seconds));
@@ -81,14 +84,17 @@ DeviceEvent CameraReceiver::WaitForImage() {
   return device_->Next(wait, received_);
 }
 
-/// Both cameras' threads count from one start, so the triggers go out together.
+/// Both cameras' threads count from one start, so the triggers go out together, also after an
+/// outage. Those that were missed are not made up for.
 void CameraReceiver::SendTriggers() {
+  const auto period = Seconds(1 / options_.trigger_hz);
+  const auto latest = std::min<Clock::duration>(period / 4, kLatestTrigger);
+  const auto late = Clock::now() - next_trigger_;
+  if (late > latest) next_trigger_ += period * (1 + late / period);
   if (next_trigger_ - Clock::now() > kTriggerMargin) return;
   if (stop_.WaitUntil(next_trigger_)) return;
   device_->Trigger();
-  const auto period = Seconds(1 / options_.trigger_hz);
-  const auto late = Clock::now() - next_trigger_;
-  next_trigger_ += period * (1 + late / period);  // those that were missed are not made up for
+  next_trigger_ += period;
 }
 
 void CameraReceiver::TakeFrame() {
@@ -135,7 +141,7 @@ void CameraReceiver::BringBack(std::string why) {
     down_since_ = now;
   }
   awaits_return_ = KeepTrying(why);
-  reopened_at_ = next_trigger_ = Clock::now();
+  reopened_at_ = Clock::now();
   if (!awaits_return_ && !stop_.raised()) {
     end_("camera_lost", CameraLostText(device_->uri(), why, options_.reconnect_s));
   }

@@ -17,6 +17,11 @@ constexpr double kSteepestSlope = 500e-6;
 constexpr std::size_t kFewestThatAgree = 4;
 constexpr std::size_t kMostThatAgree = 16;
 constexpr std::size_t kFewestPoints = 3;
+/// A point that lies below all others by more than this, and by so many times as far as they lie
+/// apart, is an error of the host's clock unless another one comes.
+constexpr double kLoneNs = 500e3;
+constexpr double kLoneBy = 8;
+constexpr std::size_t kFewestBesideLone = 16;
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
 }  // namespace
@@ -31,6 +36,8 @@ void ClockFit::Reset() {
   frames_ = 0;
   bin_ns_ = 0;
   uncertainty_ns_ = kUnknown;
+  risen_ns_ = 0;
+  falling_ns_ = 0;
 }
 
 void ClockFit::Add(std::int64_t device_ns, std::int64_t host_ns) {
@@ -41,9 +48,12 @@ void ClockFit::Add(std::int64_t device_ns, std::int64_t host_ns) {
     base_device_ns_ = device_ns;
     base_offset_ns_ = host_ns - device_ns;
   }
-  Insert({static_cast<double>(device_ns - base_device_ns_),
-          static_cast<double>(host_ns - device_ns - base_offset_ns_)});
+  Point point{static_cast<double>(device_ns - base_device_ns_),
+              static_cast<double>(host_ns - device_ns - base_offset_ns_) - risen_ns_};
+  if (HasFallen(device_ns, point)) return;
+  Insert(point);
   FitLine();
+  if (LevelRise()) FitLine();
 }
 
 void ClockFit::Insert(const Point& point) {
@@ -73,10 +83,27 @@ void ClockFit::MergeNeighbours() {
   bin_ns_ = std::min(kWidestBinNs, std::max(2 * bin_ns_, span_ns / static_cast<double>(half)));
 }
 
-double ClockFit::SlopeOfLowerEdge() {
+std::optional<std::size_t> ClockFit::FindLone() {
+  if (points_.size() <= kFewestBesideLone) return std::nullopt;
+  above_.clear();
+  for (const Point& point : points_) {
+    above_.push_back(point.delay_ns - line_.slope * point.device_ns);
+  }
+  const auto lowest = std::min_element(above_.begin(), above_.end()) - above_.begin();
+  const auto believed = above_.begin() + static_cast<std::ptrdiff_t>(kFewestBesideLone);
+  std::nth_element(above_.begin(), believed, above_.end());
+  std::nth_element(above_.begin(), above_.begin() + 1, believed);
+  const double gap_ns = above_[1] - above_[0], spread_ns = *believed - above_[1];
+  if (gap_ns <= std::max(kLoneNs, kLoneBy * spread_ns)) return std::nullopt;
+  return static_cast<std::size_t>(lowest);
+}
+
+double ClockFit::SlopeOfLowerEdge(std::optional<std::size_t> lone) {
   double mean_ns = 0;
   hull_.clear();
-  for (const Point& point : points_) {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (i == lone) continue;
+    const Point& point = points_[i];
     mean_ns += point.device_ns / static_cast<double>(points_.size());
     while (hull_.size() >= 2) {
       const Point &a = hull_[hull_.size() - 2], &b = hull_.back();
@@ -98,11 +125,13 @@ double ClockFit::SlopeOfLowerEdge() {
 
 void ClockFit::FitLine() {
   has_line_ = true;
-  line_.slope = SlopeOfLowerEdge();
+  const auto lone = FindLone();
+  line_.slope = SlopeOfLowerEdge(lone);
   const double anchor_ns = points_.back().device_ns;
   above_.clear();
-  for (const Point& point : points_) {
-    above_.push_back(point.delay_ns - line_.slope * (point.device_ns - anchor_ns));
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (i == lone) continue;
+    above_.push_back(points_[i].delay_ns - line_.slope * (points_[i].device_ns - anchor_ns));
   }
   const double lowest_ns = *std::min_element(above_.begin(), above_.end());
   line_.device_ns = base_device_ns_ + static_cast<std::int64_t>(anchor_ns);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace stereomotion {
@@ -23,7 +24,10 @@ struct ClockLine {
 /// hands over 100 ms of images at once); the least delayed ones tell the clock. So the line lies
 /// under all points (device time, host − device time), as near to them as it can: the edge of their
 /// lower convex hull above the mean time. It covers the last one to two minutes, so it follows a
-/// clock that warms up.
+/// clock that warms up. A lone point far below all others is left out: no delay is negative, but
+/// the host's clock may have been set between taking an image over and dating it. A shortest delay
+/// that rises for good (another way through the network) is seen and taken off from then on, so the
+/// line goes on as if it had not.
 class ClockFit {
  public:
   /// Adds an image; `device_ns` later than the one before.
@@ -50,16 +54,22 @@ class ClockFit {
     double device_ns = 0;  // since base_device_ns_
     double delay_ns = 0;   // host − device − base_offset_ns_
   };
+  bool HasFallen(std::int64_t device_ns, Point& point);
+  bool LevelRise();
+  [[nodiscard]] double LowestAbove(double from_ns, double to_ns) const;
   void Insert(const Point& point);
   void MergeNeighbours();
   void FitLine();
-  [[nodiscard]] double SlopeOfLowerEdge();
+  std::optional<std::size_t> FindLone();
+  [[nodiscard]] double SlopeOfLowerEdge(std::optional<std::size_t> lone);
 
   std::vector<Point> points_;  // the lowest of every bin, ascending in time
   std::vector<Point> hull_;
   std::vector<double> above_;
   std::int64_t base_device_ns_ = 0;
   std::int64_t base_offset_ns_ = 0;
+  double risen_ns_ = 0;    ///< taken off all delays
+  double falling_ns_ = 0;  ///< so much below the line lay the last image, while risen
   double bin_ns_ = 0;
   double bin_start_ns_ = 0;
   std::int64_t frames_ = 0;

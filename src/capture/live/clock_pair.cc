@@ -11,22 +11,37 @@ constexpr std::size_t kFramesToLock = 8;
 constexpr std::size_t kFewestFramesToLock = 3;
 /// So many images in a row must lie apart: the first arrivals may have been disturbed.
 constexpr int kTriesToBelieve = 16;
-/// A network delays both cameras' images by less than this for good; clocks that differ by more are
-/// not one.
-constexpr double kNoDelayNs = 1e9;
+/// Two cameras' shortest delays differ by less than this; clocks that differ by more are not one.
+constexpr double kNoDelayNs = 50e6;
 constexpr double kDriftKnown = 20e-6;
 
 }  // namespace
 
-void ClockPair::AddFrame(int camera, std::int64_t device_ns, std::int64_t host_ns) {
-  if (locked() && !shared_) {
-    // Delays are never negative: earlier than the clocks allow tells that they were set, or that
-    // all images were late so far. Either way the relation is not what it was taken for.
-    const std::int64_t late_ns = host_ns - device_ns - line(camera).HostMinusDevice(device_ns);
-    if (4 * late_ns < -period_ns()) GiveUp();
+bool ClockPair::AddFrame(int camera, std::int64_t device_ns, std::int64_t host_ns) {
+  const bool is_early = (locked() || suspect_) && IsEarly(camera, device_ns, host_ns);
+  const bool confirmed = is_early && suspect_ == camera;
+  last_ns_[Index(camera)] = device_ns;
+  if (confirmed) {
+    given_up_ -= shared_ ? 1 : 0;  // arrivals only watch over one clock: no pair was wrong
+    GiveUp();
+  } else if (is_early) {
+    // The host's clock may be at fault for one alone. The next image tells; no pairs until then.
+    if (!suspect_) suspect_ = camera;
+    state_ = LockState::kTooFewFrames;
+    return false;
+  } else if (suspect_ == camera) {
+    suspect_.reset();
+    state_ = LockState::kLocked;
   }
   fits_[Index(camera)].Add(device_ns, host_ns);
-  last_ns_[Index(camera)] = device_ns;
+  return confirmed;
+}
+
+/// Delays are never negative: earlier than the clocks allow tells that they were set, or that all
+/// images were late so far. Either way the relation is not what it was taken for.
+bool ClockPair::IsEarly(int camera, std::int64_t device_ns, std::int64_t host_ns) const {
+  const std::int64_t late_ns = host_ns - device_ns - line(camera).HostMinusDevice(device_ns);
+  return 4 * late_ns < -period_ns();
 }
 
 void ClockPair::AddStep(int camera, std::int64_t step_ns, std::int64_t frames) {
@@ -35,6 +50,7 @@ void ClockPair::AddStep(int camera, std::int64_t step_ns, std::int64_t frames) {
 
 void ClockPair::ResetClock(int camera) {
   fits_[Index(camera)].Reset();
+  suspect_.reset();
   state_ = LockState::kTooFewFrames;
 }
 
@@ -79,6 +95,7 @@ double ClockPair::UsableSlope() const {
 
 void ClockPair::TryLock(const std::vector<std::int64_t>& left_ns,
                         const std::vector<std::int64_t>& right_ns, bool patient) {
+  if (suspect_) return;
   const auto fitted = static_cast<std::size_t>(std::min(fits_[0].frames(), fits_[1].frames()));
   const std::size_t frames = std::min({left_ns.size(), right_ns.size(), fitted});
   state_ = LockState::kTooFewFrames;
@@ -88,9 +105,15 @@ void ClockPair::TryLock(const std::vector<std::int64_t>& left_ns,
 
 void ClockPair::CheckSharedClock() {
   const double apart_ns = std::abs(static_cast<double>(OffsetByArrivals().value_or(0)));
-  if (!(apart_ns > kNoDelayNs + uncertainty_ns())) return;
+  const auto period_ns = static_cast<double>(this->period_ns());
+  // Where it was less once, one of them was set since.
+  if (!(apart_ns > std::min(kNoDelayNs, usual_apart_ns_ + period_ns / 2) + uncertainty_ns())) {
+    if (uncertainty_ns() < period_ns / 8) usual_apart_ns_ = std::min(usual_apart_ns_, apart_ns);
+    return;
+  }
   shared_ = false;
   distrusts_ = true;
+  if (locked()) GiveUp();
 }
 
 LockState ClockPair::Lock(const std::vector<std::int64_t>& left_ns,

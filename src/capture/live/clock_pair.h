@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -37,8 +38,9 @@ class ClockPair {
   /// `shared`: the cameras say that they have one clock.
   explicit ClockPair(bool shared) : shared_(shared) {}
 
-  /// Adds an image's times; `host_ns` is its arrival less half the exposure.
-  void AddFrame(int camera, std::int64_t device_ns, std::int64_t host_ns);
+  /// Adds an image's times; `host_ns` is its arrival less half the exposure. Whether it shows, by
+  /// coming too early, that the relation was misjudged from the start.
+  bool AddFrame(int camera, std::int64_t device_ns, std::int64_t host_ns);
   /// Adds the time from an image to the next one that came, `frames` numbers on.
   void AddStep(int camera, std::int64_t step_ns, std::int64_t frames);
   /// Forgets a camera's clock, which was set anew.
@@ -66,7 +68,7 @@ class ClockPair {
   /// Learns from a pair that was found.
   void TakePair(std::int64_t left_ns, std::int64_t right_ns);
   /// Notes that images of both cameras come and go without partners.
-  void TakeNoPairs() { free_running_ = true; }
+  void TakeNoPairs();
 
   /// The faster camera's; 0: not known yet.
   [[nodiscard]] std::int64_t period_ns() const;
@@ -89,6 +91,7 @@ class ClockPair {
   LockState Lock(const std::vector<std::int64_t>& left_ns,
                  const std::vector<std::int64_t>& right_ns);
   void Settle(ClockRelation relation, std::int64_t offset_ns, double constant_ns);
+  [[nodiscard]] bool IsEarly(int camera, std::int64_t device_ns, std::int64_t host_ns) const;
   void JudgeShared(double median_ns, double spread_ns);
   void JudgeByArrivals(double median_ns, double spread_ns, std::int64_t right_ns);
   void JudgeWalk(double walk_ns, double limit_ns);
@@ -98,6 +101,7 @@ class ClockPair {
 
   bool shared_;
   bool distrusts_ = false;
+  double usual_apart_ns_ = std::numeric_limits<double>::infinity();  ///< of one clock, by arrivals
   std::array<ClockFit, 2> fits_;
   std::array<FrameSteps, 2> steps_;
   std::array<std::int64_t, 2> last_ns_{};
@@ -113,6 +117,7 @@ class ClockPair {
   double constant_ns_ = 0;          ///< offset by pairs − offset by arrivals, of cameras in step
   double anchor_ns_ = 0;            ///< uncertainty with which `constant_ns_` was taken
   std::optional<double> first_ns_;  ///< median of the first block of pairs
+  std::optional<int> suspect_;      ///< was locked until this camera's last image
   PairBlocks blocks_;
   ImagePhase phase_;
   int walks_ = 0;

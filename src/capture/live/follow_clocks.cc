@@ -24,7 +24,14 @@ void ClockPair::TakePair(std::int64_t left_ns, std::int64_t right_ns) {
   }
 }
 
+void ClockPair::TakeNoPairs() {
+  free_running_ = true;
+  if (shared_) CheckSharedClock();
+}
+
 void ClockPair::JudgeShared(double median_ns, double spread_ns) {
+  CheckSharedClock();
+  if (!shared_) return;
   const double limit_ns = std::max(static_cast<double>(period_ns()) / 16, 3 * spread_ns);
   JudgeWalk(median_ns - *first_ns_, limit_ns);
 }

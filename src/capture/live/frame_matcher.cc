@@ -52,7 +52,7 @@ void FrameMatcher::Take(int camera, LiveFrame frame) {
   }
   constexpr double kNsPerUs = 1e3;
   const auto half_ns = std::llround(frame.frame->exposure_us * kNsPerUs / 2);
-  clocks_.AddFrame(camera, frame.device_ns, frame.host_ns - half_ns);
+  if (clocks_.AddFrame(camera, frame.device_ns, frame.host_ns - half_ns)) numbers_.Loosen();
   waiting_[Index(camera)].push_back(std::move(frame));
   try_lock_ = true;
 }

@@ -63,9 +63,9 @@ void FrameMatcher::GiveEarlier(std::int64_t difference_ns) {
 }
 
 void FrameMatcher::GiveIfNumbersAgree() {
-  const std::int64_t difference = waiting_[0].front().frame_id - waiting_[1].front().frame_id;
-  const bool is_shared = clocks_.relation() == ClockRelation::kShared;
-  const auto verdict = is_shared ? NumberRule::Verdict::kKeeps : numbers_.Judge(difference);
+  const LiveFrame &left = waiting_[0].front(), &right = waiting_[1].front();
+  const auto verdict = numbers_.Judge(left.frame_id - right.frame_id,
+                                      left.device_ns - right.device_ns, clocks_.period_ns());
   if (verdict == NumberRule::Verdict::kKeeps) {
     GivePair();
     return;

@@ -1,6 +1,8 @@
 #include "pair_statistics.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "stereomotion/core/median.h"
 
@@ -40,20 +42,34 @@ std::optional<PairBlocks::Block> PairBlocks::Add(double difference_ns) {
   return block;
 }
 
-NumberRule::Verdict NumberRule::Judge(std::int64_t difference) {
-  constexpr std::int64_t kRule = 16;  // so many pairs in a row make it one
+bool NumberRule::IsOffByPeriods(std::int64_t difference, std::int64_t apart_ns,
+                                std::int64_t period_ns) {
+  const std::int64_t expected_ns = (difference - difference_) * period_ns;
+  const std::int64_t moved_ns = apart_ns - apart_ns_ - expected_ns;
+  if (4 * std::llabs(moved_ns) >= period_ns) return false;
+  apart_ns_ += moved_ns;  // clocks that drift are followed while pairs are lost
+  return true;
+}
+
+NumberRule::Verdict NumberRule::Judge(std::int64_t difference, std::int64_t apart_ns,
+                                      std::int64_t period_ns) {
   constexpr std::int64_t kDoubtsToChange = 4;
   if (difference == difference_) {
     ++agreed_;
+    loose_ = std::max<std::int64_t>(0, loose_ - 1);
     doubts_ = 0;
+    apart_ns_ = apart_ns;
     return Verdict::kKeeps;
   }
   doubts_ = difference == doubted_ ? doubts_ + 1 : 1;
   doubted_ = difference;
-  if (agreed_ >= kRule && doubts_ < kDoubtsToChange) {
+  const bool off_by_periods = IsOffByPeriods(difference, apart_ns, period_ns);
+  const bool may_change = loose_ > 0 || !off_by_periods;
+  if (agreed_ >= kRule && (doubts_ < kDoubtsToChange || !may_change)) {
     return doubts_ == 1 ? Verdict::kFirstDoubt : Verdict::kDoubt;
   }
   difference_ = difference;
+  apart_ns_ = apart_ns;
   Forget();
   return Verdict::kKeeps;
 }

@@ -47,17 +47,30 @@ class NumberRule {
   enum class Verdict {
     kKeeps,
     kFirstDoubt,  ///< breaks the rule: not to be taken
-    kDoubt,       ///< does so again, alike; after a few the rule is taken for outdated
+    kDoubt,       ///< does so again, alike
   };
-  /// Adds left − right of a possible pair's numbers.
-  Verdict Judge(std::int64_t difference);
-  void Forget() { agreed_ = doubts_ = 0; }
+  /// Adds left − right of a possible pair's numbers, and of its device times.
+  ///
+  /// After a few doubts alike the rule is taken for outdated, if the device times bear it out: if
+  /// they too have changed by as many periods as the numbers, numbers and clocks go on as ever and
+  /// it is the relation of the clocks that is wrong. Then the rule stands, and pairs are lost.
+  Verdict Judge(std::int64_t difference, std::int64_t apart_ns, std::int64_t period_ns);
+  /// Notes that the pairs from which the rule was learned may have been wrong ones: a few doubts
+  /// overrule it.
+  void Loosen() { loose_ = kRule; }
+  void Forget() { agreed_ = doubts_ = loose_ = 0; }
 
  private:
+  static constexpr std::int64_t kRule = 16;  ///< so many pairs in a row make it one
+
+  bool IsOffByPeriods(std::int64_t difference, std::int64_t apart_ns, std::int64_t period_ns);
+
   std::int64_t difference_ = 0;
   std::int64_t agreed_ = 0;  ///< pairs in a row
   std::int64_t doubted_ = 0;
-  std::int64_t doubts_ = 0;  ///< in a row, with that difference
+  std::int64_t doubts_ = 0;    ///< in a row, with that difference
+  std::int64_t loose_ = 0;     ///< more than so many pairs that obey it make it firm again
+  std::int64_t apart_ns_ = 0;  ///< of the device times of pairs that obey the rule, lately
 };
 
 }  // namespace stereomotion
