@@ -12,6 +12,9 @@ namespace {
 constexpr double kPercent = 100;
 /// Losses that a take survives: a gap of a frame is bridged by the tracker, many are not.
 constexpr double kFewLost = 0.001, kManyLost = 0.05;
+/// Images without partner that a look at live cameras may have at its ends: of a short one a large
+/// share.
+constexpr std::int64_t kAtTheEnds = 2;
 
 double Share(std::int64_t part, std::int64_t whole) {
   return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
@@ -112,6 +115,7 @@ Finding JudgeSync(const StreamFacts& stream) {
   Finding finding{"sync", "", Verdict::kGood, "", "", {}};
   const std::int64_t unpaired = std::max(stream.unpaired[0], stream.unpaired[1]);
   const double share = Share(unpaired, stream.pairs + unpaired);
+  const std::int64_t at_ends = stream.live ? kAtTheEnds : 0;
   finding.values = {
       {"skew_ms", stream.skew_ms}, {"jitter_ms", stream.jitter_ms}, {"unpaired_share", share}};
   finding.text = SyncText(stream);
@@ -123,7 +127,7 @@ Finding JudgeSync(const StreamFacts& stream) {
     finding.verdict = Verdict::kMend;
     finding.text = "the cameras run freely, each at its own rate: " + finding.text;
     finding.advice = kTriggerThem;
-  } else if (stream.pairs == 0 || share > kManyLost) {
+  } else if (stream.pairs == 0 || (share > kManyLost && unpaired > at_ends)) {
     finding.verdict = Verdict::kMend;
     finding.advice = AdviceForUnpaired(stream);
   } else if (share > kFewLost) {

@@ -1,9 +1,12 @@
 // What goes wrong while it is recorded must not spoil what is there.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include <atomic>
 #include <cerrno>
+#include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <thread>
@@ -140,6 +143,24 @@ TEST(RecorderFaults, UnreadableSegmentIsAProblem) {
   recorder.reset();
   fs::rename(whole, segment);
   EXPECT_EQ(RepairRecording(file).frames[0], 100);
+}
+
+// A file that grows no more, as on a full disk: HDF5 cannot close it, and tried again at the
+// program's exit.
+TEST(RecorderFaultsDeathTest, ProgramEndsByItselfWhenNoSegmentCanBeCreated) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  TemporaryFolder folder;
+  const auto record = [&] {
+    std::signal(SIGXFSZ, SIG_IGN);  // the write fails instead
+    constexpr rlim_t kMost_bytes = 20000;
+    const rlimit limit{kMost_bytes, kMost_bytes};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    const auto recorder = StartRecorder({folder.path() / "rec.h5"});
+    RecordPairs(*recorder, 0, 200);
+    recorder->Finish();
+    std::exit(recorder->counts().problem.empty() ? 1 : 0);
+  };
+  EXPECT_EXIT(record(), ::testing::ExitedWithCode(0), "");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 Usage: options_live_test.py PATH/TO/stereomotion PATH/TO/stereomotion_gv_server [unittest options]
 """
 
+import hashlib
 import json
 import pathlib
 import resource
@@ -98,7 +99,7 @@ class OptionsLive(LiveCase):
         taken.listen()
 
     def files(self):
-        return {file: file.read_bytes() for file in self.dir.rglob("*")
+        return {file: hashlib.sha256(file.read_bytes()).hexdigest() for file in self.dir.rglob("*")
                 if file.is_file() and not file.name.startswith("server-")}
 
     def test_one_camera_under_two_names(self):

@@ -19,7 +19,11 @@ herr_t KeepFirst(unsigned level, const H5E_error2_t* error, void* text) {
 
 }  // namespace
 
-H5Lock::H5Lock() : lock_(LibraryMutex()) { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+H5Lock::H5Lock() : lock_(LibraryMutex()) {
+  // At a program's exit HDF5 would close what it could not close before, on a full disk, and crash.
+  [[maybe_unused]] static const herr_t before_any_other_call = H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 H5Handle::~H5Handle() {
   if (id_ >= 0) H5Idec_ref(id_);
