@@ -8,8 +8,8 @@
 #include "analyse_results.h"
 #include "commands.h"
 #include "motion_run.h"
-#include "stereomotion/core/user_error.h"
 #include "stereomotion/core/output_error.h"
+#include "stereomotion/core/user_error.h"
 #include "stereomotion/io/run_analysis.h"
 #include "stereomotion/io/write_file.h"
 

@@ -7,8 +7,8 @@
 #include <memory>
 
 #include "commands.h"
-#include "stereomotion/core/user_error.h"
 #include "stereomotion/core/output_error.h"
+#include "stereomotion/core/user_error.h"
 #include "stereomotion/io/rig_export.h"
 #include "stereomotion/io/rig_file.h"
 #include "stereomotion/io/rig_writer.h"

@@ -11,7 +11,6 @@ import pathlib
 import re
 import subprocess
 import sys
-import unittest
 
 import calibrate_case
 from calibrate_case import Case

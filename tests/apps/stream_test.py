@@ -6,7 +6,6 @@ import socket
 import subprocess
 import sys
 import time
-import unittest
 
 import small_recording
 from small_recording import BODY, NOISE, RIG, FolderCase, rows, run

@@ -58,8 +58,9 @@ class CorrectForExposureTest : public ::testing::Test {
     pair.timestamp_ns = number * kFrameNs;
     pair.exposure_s = {exposure_s_, one_camera_tells_ ? 0 : exposure_s_};
     PoseFix fix;
-    fix.pose = *EstimatePose(setup_.rig.cameras[0], setup_.rig.cameras[1], setup_.bodies[0], seen.left,
-                             seen.right, seen.truth, PoseAt(start, mid_s), {}, &fix.used);
+    fix.pose =
+        *EstimatePose(setup_.rig.cameras[0], setup_.rig.cameras[1], setup_.bodies[0], seen.left,
+                      seen.right, seen.truth, PoseAt(start, mid_s), {}, &fix.used);
     pair.mean_world_from_body = BodyPlacement(setup_.bodies[0], fix.pose);
     pair.fix = std::move(fix);
     pair.balls = {std::move(seen.left), std::move(seen.right)};

@@ -40,8 +40,8 @@ struct MotionAnalysis {
   std::vector<MotionSample> samples;  ///< one a frame
   std::optional<TimeOffset> time_offset;
   bool time_offset_applied = false;  ///< significant, and every pose has its image points
-  double mean_rate_rad_s = 0;  ///< way of the rotation over time
-  double total_rad = 0;        ///< way of the rotation, ∫ |ω| dt: back and forth adds up
+  double mean_rate_rad_s = 0;        ///< way of the rotation over time
+  double total_rad = 0;              ///< way of the rotation, ∫ |ω| dt: back and forth adds up
   std::vector<std::string> warnings;
 };
 
