@@ -14,6 +14,7 @@ namespace {
 
 using testing::ExpectRight;
 using testing::kMs;
+using testing::kPeriod;
 using testing::kSecond;
 using testing::Match;
 using testing::Offset;
@@ -55,6 +56,30 @@ TEST(FrameMatcher, ClocksHoursApartThatDrift) {
       ASSERT_TRUE(outcome.drift_ppm);
       EXPECT_NEAR(*outcome.drift_ppm, -100, 5);
     }
+  }
+}
+
+// The second camera sends each image a period or more later than the first: arrivals alone would
+// take neighbours for partners, the times that coincide tell the truth.
+TEST(FrameMatcher, TimesThatCoincideOutweighArrivals) {
+  for (const double periods : {0.4, 1.0, 1.3, 2.0, 7.0}) {
+    for (std::uint32_t seed = 0; seed < 5; ++seed) {
+      Scene scene;
+      scene.cameras[1].delay_ns += std::llround(periods * kPeriod);
+      const Outcome outcome = Match(scene, seed);
+      ExpectRight(outcome, 0);
+      EXPECT_EQ(outcome.relation, ClockRelation::kAgreeing);
+      EXPECT_FALSE(outcome.free_running);
+    }
+  }
+}
+
+// A recording that is played faster or slower than it was taken.
+TEST(FrameMatcher, TimesThatCoincideNeedNoTrueClocks) {
+  for (const double drift : {-0.5, 1.0}) {
+    Scene scene;
+    for (auto& camera : scene.cameras) camera.drift = drift;
+    ExpectRight(Match(scene, 1), 0);
   }
 }
 

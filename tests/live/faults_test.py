@@ -169,8 +169,8 @@ class Clocks(FaultCase):
         self.check_poses(Truth(self.base / "served", self.rate_hz, offset_s), least=25)
 
     def test_clocks_are_about_a_period_apart(self):
-        """By their times alone each image fits the neighbour of its true partner, too."""
-        for offset_s in (0.04, -0.02, 0.012):
+        """By their times alone each image fits the neighbour of its true partner nearly as well."""
+        for offset_s in (0.041, -0.02, 0.012):
             with self.subTest(offset_s=offset_s):
                 output, recording = f"run{offset_s}", f"rec{offset_s}"
                 with self.server(right=("--clock-offset-s", offset_s)):

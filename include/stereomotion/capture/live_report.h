@@ -23,7 +23,7 @@ struct LiveCameraReport {
 /// Names where the relation of the two cameras' clocks comes from.
 enum class ClockRelation {
   kShared,     ///< one clock: PTP, the host's own
-  kAgreeing,   ///< two clocks that agree within what arrival times can tell: taken as one
+  kAgreeing,   ///< taken as one: image times coincide, or clocks agree as far as arrivals tell
   kEstimated,  ///< offset and drift from arrival times; the mean difference of a pair is taken as 0
 };
 

@@ -14,11 +14,14 @@ constexpr int kTriesToBelieve = 16;
 /// Two cameras' shortest delays differ by less than this; clocks that differ by more are not one.
 constexpr double kNoDelayNs = 50e6;
 constexpr double kDriftKnown = 20e-6;
+/// Some cameras count microseconds.
+constexpr std::int64_t kClockTickNs = 1000;
 
 }  // namespace
 
 bool ClockPair::AddFrame(int camera, std::int64_t device_ns, std::int64_t host_ns) {
-  const bool is_early = (locked() || suspect_) && IsEarly(camera, device_ns, host_ns);
+  const bool watched = (locked() || suspect_) && !coincide_;
+  const bool is_early = watched && IsEarly(camera, device_ns, host_ns);
   const bool confirmed = is_early && suspect_ == camera;
   last_ns_[Index(camera)] = device_ns;
   if (confirmed) {
@@ -99,8 +102,9 @@ void ClockPair::TryLock(const std::vector<std::int64_t>& left_ns,
   const auto fitted = static_cast<std::size_t>(std::min(fits_[0].frames(), fits_[1].frames()));
   const std::size_t frames = std::min({left_ns.size(), right_ns.size(), fitted});
   state_ = LockState::kTooFewFrames;
-  if (frames < (patient ? kFewestFramesToLock : kFramesToLock) || period_ns() <= 0) return;
-  state_ = Lock(left_ns, right_ns);
+  const std::size_t wanted = patient ? kFewestFramesToLock : kFramesToLock;
+  if (frames < wanted || period_ns() <= 0) return;
+  state_ = Lock(left_ns, right_ns, wanted);
 }
 
 void ClockPair::CheckSharedClock() {
@@ -113,16 +117,41 @@ void ClockPair::CheckSharedClock() {
   }
   shared_ = false;
   distrusts_ = true;
+  may_coincide_ = false;
   if (locked()) GiveUp();
 }
 
 LockState ClockPair::Lock(const std::vector<std::int64_t>& left_ns,
-                          const std::vector<std::int64_t>& right_ns) {
+                          const std::vector<std::int64_t>& right_ns, std::size_t wanted) {
+  coincide_ = false;
   if (shared_) CheckSharedClock();
   if (shared_) {
     Settle(ClockRelation::kShared, 0, 0);
     return LockState::kLocked;
   }
+  if (may_coincide_) {
+    const LockState state = LockByCoincidence(left_ns, right_ns, wanted);
+    if (state != LockState::kNotTogether) return state;
+  }
+  const LockState state = LockByArrivals(left_ns, right_ns);
+  if (state == LockState::kLocked) may_coincide_ = false;
+  return state;
+}
+
+LockState ClockPair::LockByCoincidence(const std::vector<std::int64_t>& left_ns,
+                                       const std::vector<std::int64_t>& right_ns,
+                                       std::size_t wanted) {
+  const std::int64_t near_ns = period_ns() / 1000 + kClockTickNs;
+  phase_.Compare(left_ns, right_ns, 0, near_ns);
+  if (phase_.size() < kFewestFramesToLock) return LockState::kNotTogether;
+  if (phase_.size() < wanted) return LockState::kTooFewFrames;
+  coincide_ = true;
+  Settle(ClockRelation::kAgreeing, 0, 0);
+  return LockState::kLocked;
+}
+
+LockState ClockPair::LockByArrivals(const std::vector<std::int64_t>& left_ns,
+                                    const std::vector<std::int64_t>& right_ns) {
   const auto period_ns = static_cast<double>(this->period_ns());
   if (!(uncertainty_ns() <= period_ns / 8)) return LockState::kAmbiguous;
   const std::int64_t arrivals_ns = *OffsetByArrivals();

@@ -25,7 +25,10 @@ enum class LockState {
 /// Relates the clocks of two cameras: left time = right time + `OffsetAt`. Cameras: 0 left, 1
 /// right.
 ///
-/// Cameras with one clock need no estimate. Else arrivals tell the offset (`ClockFit`) but for the
+/// Cameras with one clock need no estimate: they say so, or their image times coincide to a
+/// thousandth of a period, image by image, which clocks of their own do not by chance. Such times
+/// are believed whatever arrivals say (a camera may send its images a period later than the other).
+/// Else arrivals tell the offset (`ClockFit`) but for the
 /// unknown difference of the two shortest delays. It must be known to an eighth of a period, and by
 /// it the images must lie nearer to each other than a quarter: so a pair can be wrong by a whole
 /// period only where the shortest delays differ by more than five eighths of one. Then the constant
@@ -89,10 +92,15 @@ class ClockPair {
 
   static std::size_t Index(int camera) { return static_cast<std::size_t>(camera); }
   LockState Lock(const std::vector<std::int64_t>& left_ns,
-                 const std::vector<std::int64_t>& right_ns);
+                 const std::vector<std::int64_t>& right_ns, std::size_t wanted);
+  LockState LockByCoincidence(const std::vector<std::int64_t>& left_ns,
+                              const std::vector<std::int64_t>& right_ns, std::size_t wanted);
+  LockState LockByArrivals(const std::vector<std::int64_t>& left_ns,
+                           const std::vector<std::int64_t>& right_ns);
   void Settle(ClockRelation relation, std::int64_t offset_ns, double constant_ns);
   [[nodiscard]] bool IsEarly(int camera, std::int64_t device_ns, std::int64_t host_ns) const;
   void JudgeShared(double median_ns, double spread_ns);
+  void JudgeCoincidence(double median_ns);
   void JudgeByArrivals(double median_ns, double spread_ns, std::int64_t right_ns);
   void JudgeWalk(double walk_ns, double limit_ns);
   void Follow(double target_ns, double spread_ns, std::int64_t right_ns);
@@ -101,6 +109,8 @@ class ClockPair {
 
   bool shared_;
   bool distrusts_ = false;
+  bool coincide_ = false;     ///< image times coincide: one clock, whoever says what
+  bool may_coincide_ = true;  ///< until arrivals have told that the clocks are two
   double usual_apart_ns_ = std::numeric_limits<double>::infinity();  ///< of one clock, by arrivals
   std::array<ClockFit, 2> fits_;
   std::array<FrameSteps, 2> steps_;

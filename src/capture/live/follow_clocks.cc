@@ -17,11 +17,22 @@ void ClockPair::TakePair(std::int64_t left_ns, std::int64_t right_ns) {
   const auto block = blocks_.Add(static_cast<double>(left_ns - right_ns - base_ns_));
   if (!block) return;
   if (!first_ns_) first_ns_ = block->median_ns;
+  if (coincide_) JudgeCoincidence(block->median_ns);
   if (shared_) {
     JudgeShared(block->median_ns, block->spread_ns);
-  } else {
+  } else if (!coincide_ && locked()) {
     JudgeByArrivals(block->median_ns, block->spread_ns, right_ns);
   }
+}
+
+/// Times that coincide no more were two clocks' after all; arrivals take over, if they agree.
+void ClockPair::JudgeCoincidence(double median_ns) {
+  const auto period_ns = static_cast<double>(this->period_ns());
+  if (std::abs(median_ns - *first_ns_) < period_ns / 64) return;
+  coincide_ = may_coincide_ = false;
+  constant_ns_ = median_ns - static_cast<double>(*OffsetByArrivals());
+  anchor_ns_ = uncertainty_ns();
+  if (!(std::abs(constant_ns_) < period_ns / 4)) GiveUp();
 }
 
 void ClockPair::TakeNoPairs() {
