@@ -34,9 +34,10 @@ check_format() {
     xargs -0 clang-format --dry-run --Werror
 }
 
+# build_preset PRESET [TARGETS]
 build_preset() {
   stage "configure $1" cmake --preset "$1"
-  stage "build $1" cmake --build --preset "$1"
+  stage "build $1" cmake --build --preset "$1" --target "${@:2}"
 }
 
 if $all; then scripts/install_deps.sh --tests --lint; else scripts/install_deps.sh --tests; fi
@@ -46,16 +47,17 @@ if [[ ! -d $shared_data ]]; then
   echo "SKIPPED: tests on $shared_data (absent; STEREOMOTION_SHARED_DATA names another place)"
 fi
 
-build_preset release
 if ! $all; then
+  build_preset release all
   run_tests release 'unit|data|device'
   exit
 fi
 
+build_preset release all slow_tests
 run_tests release 'unit|data|device|slow'
 stage "check format" check_format
-build_preset lint
-build_preset asan
+build_preset lint all slow_tests
+build_preset asan all
 run_tests asan 'unit|data|device'
-build_preset tsan
+build_preset tsan all
 run_tests tsan 'unit|data'
