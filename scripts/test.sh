@@ -23,11 +23,10 @@ done
 . "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 cd "$root"
 
-# run_tests PRESET LABELS: ctest without a line for each test that passes. One more at once than
-# there are cores: tests of live cameras mostly wait.
+# run_tests PRESET LABELS: ctest without a line for each test that passes.
 run_tests() {
   echo "ctest ($1): ${2//|/, }"
-  ctest --preset "$1" --label-regex "^($2)\$" --parallel $(($(nproc) + 1)) | failures_and_summary
+  ctest --preset "$1" --label-regex "^($2)\$" --parallel "$(nproc)" | failures_and_summary
 }
 
 check_format() {

@@ -26,10 +26,12 @@ class Packets(FaultCase):
         with self.server("--lost-per-mille", 0.1):
             result = self.track("--packet-size", 8000, "--duration", 4, *PATIENT)
         self.assert_done(result)
-        table = self.check_poses(least=60)
-        whole = [row for row in table if row["status"] != "no_pair"]
+        self.check_poses(least=60)
         self.check_stamps(least=60)
-        self.assertGreaterEqual(len(whole), 0.95 * len(table), self.statuses(table))
+        # Images that the busy host did not even send are no lost packets' fault.
+        live = self.result()["live"]
+        torn = sum(camera["counts"]["incomplete"] for camera in live["cameras"])
+        self.assertGreaterEqual(live["pairs"], 0.95 * (live["pairs"] + torn), torn)
         self.assert_counts_add_up()
 
     def test_many_packets_are_lost(self):
